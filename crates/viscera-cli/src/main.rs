@@ -1,0 +1,3 @@
+//! The `viscera` program.
+
+fn main() {}

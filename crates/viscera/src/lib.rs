@@ -1,0 +1,8 @@
+//! Soft tissue in real time, physically.
+//!
+//! Viscera unites two lines of work, the non-linear anisotropic tensor-mass models for surgery (Picinbono, Delingette,
+//! Ayache 2000/2001) and the physically realistic interactive models (Nesme et al. 2005). All quantities are SI
+//! (m, kg, s, N, Pa) unless an item says otherwise. The crate touches no file, socket, clock or global thread.
+
+pub mod math;
+pub mod mesh;

@@ -1,0 +1,13 @@
+//! Numbers, lanes, small vectors and matrices: one text for `f32`, `f64` and SIMD lanes.
+
+mod lanes;
+mod mat3;
+mod real;
+mod sym3;
+mod vec3;
+
+pub use lanes::{Lanes, Scalar, dispatch_level};
+pub use mat3::Mat3;
+pub use real::Real;
+pub use sym3::Sym3;
+pub use vec3::Vec3;

@@ -1,0 +1,21 @@
+//! Meshes of tetrahedra and hexahedra: storage, topology, surface, regions, quality, generators.
+//!
+//! Nodes are numbered from 0 and measured in metres. Corners follow the Gmsh/VTK order: a tetrahedron (a, b, c, d) has
+//! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
+
+mod error;
+mod region;
+mod surface_mesh;
+mod topology;
+mod volume_mesh;
+
+pub use error::MeshError;
+pub use region::NamedRegion;
+pub use surface_mesh::SurfaceMesh;
+pub use topology::{Face, TetTopology, cells_of_nodes};
+pub use volume_mesh::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, TET_EDGES, TET_FACES, TetMesh, VolumeMesh};
+
+use crate::math::Vec3;
+
+/// A place in space [m], in double precision: what meshes are made of.
+pub type Point = Vec3<f64>;
