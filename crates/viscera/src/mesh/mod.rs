@@ -4,12 +4,14 @@
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
 mod error;
+pub mod generate;
 mod region;
 mod surface_mesh;
 mod topology;
 mod volume_mesh;
 
 pub use error::MeshError;
+pub use generate::{CubeCut, GenerateError, TubeDivisions};
 pub use region::NamedRegion;
 pub use surface_mesh::SurfaceMesh;
 pub use topology::{Face, TetTopology, cells_of_nodes};
