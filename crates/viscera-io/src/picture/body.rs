@@ -53,7 +53,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// The surface `triangles` (counter-clockwise seen from outside) over `nodes` [m]. Inner nodes may be among them.
+    /// The surface `triangles` (counter-clockwise seen from outside) over `nodes` \[m\]. Inner nodes may be among them.
     pub fn new(nodes: &[Vec3<f64>], triangles: &[[u32; 3]]) -> Self {
         Self {
             nodes: nodes.to_vec(),
@@ -79,9 +79,9 @@ impl Body {
         self.finish = finish;
         self
     }
-    /// Liver: red-brown and wet.
+    /// Liver: red-brown and wet, and smooth up to 65°, so that a coarse mesh still looks grown.
     pub fn tissue(self) -> Self {
-        self.colour(Colour::LIVER).finish(Finish::Wet)
+        self.colour(Colour::LIVER).finish(Finish::Wet).crease(65.0)
     }
     /// Colours by a value per node, with a legend. Drawn matte, so that the colours can be read.
     pub fn field(mut self, field: Field) -> Self {
@@ -109,7 +109,7 @@ impl Body {
         self.ghost = true;
         self
     }
-    /// Edges sharper than this angle [degrees, default 40] stay sharp, flatter ones are smoothed.
+    /// Edges sharper than this angle (degrees, default 40) stay sharp, flatter ones are smoothed.
     pub fn crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self

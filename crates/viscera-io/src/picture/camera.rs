@@ -15,7 +15,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Frames the box `minimum`..`maximum` [m] from the front, right and above, in perspective, y up.
+    /// Frames the box `minimum`..`maximum` \[m\] from the front, right and above, in perspective, y up.
     pub fn framing(minimum: Vec3<f64>, maximum: Vec3<f64>) -> Self {
         let direction = Vec3::new(-0.55, -0.45, -0.75);
         Self { minimum, maximum, direction, up: Vec3::new(0.0, 1.0, 0.0), angle: Some(28.0) }
@@ -30,7 +30,7 @@ impl Camera {
         self.up = up.into();
         self
     }
-    /// Perspective with this opening angle of the picture's height [degrees, in (0, 150]; default 28].
+    /// Perspective with this opening angle of the picture's height (degrees, above 0, at most 150; default 28).
     pub fn perspective(mut self, degrees: f64) -> Self {
         self.angle = Some(degrees);
         self
@@ -92,9 +92,9 @@ pub(super) struct View {
     pub(super) perspective: bool,
     /// Pixels per unit slope (perspective) or per metre (parallel).
     focal: f64,
-    /// Place of the image that looks straight ahead [pixels].
+    /// Place of the image that looks straight ahead \[pixels\].
     centre: [f64; 2],
-    /// Diagonal of the framed box [m]: the measure of everything that has no size of its own.
+    /// Diagonal of the framed box \[m\]: the measure of everything that has no size of its own.
     pub(super) size: f64,
     pub(super) minimum: Vec3<f64>,
     pub(super) maximum: Vec3<f64>,
@@ -120,7 +120,7 @@ impl View {
         })
     }
 
-    /// Steps back (perspective) or scales (parallel) until the projected box fills `room` [pixels], then shifts the
+    /// Steps back (perspective) or scales (parallel) until the projected box fills `room` \[pixels\], then shifts the
     /// image so that the box sits about `middle`.
     fn frame(&mut self, slope: Option<f64>, room: [f64; 2], middle: [f64; 2], half_height: f64) {
         let centre = self.eye;
@@ -191,7 +191,7 @@ impl View {
     }
 
     /// Direction from `point` to the camera (unit).
-    pub(super) fn to_viewer(&self, point: Vec3<f64>) -> Vec3<f64> {
+    pub(super) fn towards_viewer(&self, point: Vec3<f64>) -> Vec3<f64> {
         match self.perspective {
             true => (self.eye - point).normalized().unwrap_or(-self.forward),
             false => -self.forward,

@@ -22,7 +22,7 @@ pub(super) struct Corner {
 pub(super) struct Facet {
     pub(super) image: [Projected; 3],
     pub(super) corners: [Corner; 3],
-    /// Twice the signed area on the image [pixels²], not 0.
+    /// Twice the signed area on the image \[pixels²\], not 0.
     pub(super) area: f64,
     pub(super) finish: Finish,
     pub(super) mapped: bool,
@@ -35,7 +35,7 @@ pub(super) struct Hit {
     pub(super) position: Vec3<f64>,
     pub(super) normal: Vec3<f64>,
     pub(super) colour: Light,
-    /// Distance to the nearest edge of the facet [pixels].
+    /// Distance to the nearest edge of the facet \[pixels\].
     pub(super) edge: f64,
 }
 

@@ -15,9 +15,9 @@ pub(super) struct Ground {
     u: Vec3<f64>,
     v: Vec3<f64>,
     normal: Vec3<f64>,
-    /// Side of a grid square [m].
+    /// Side of a grid square \[m\].
     step: f64,
-    /// Half the side of the shadow's map [m].
+    /// Half the side of the shadow's map \[m\].
     half: f64,
     shadow: Vec<f32>,
 }
@@ -87,7 +87,7 @@ impl Ground {
         }
     }
 
-    /// Coordinates in the plane, from the origin [m].
+    /// Coordinates in the plane, from the origin \[m\].
     fn plane(&self, point: Vec3<f64>) -> [f64; 2] {
         let p = point - self.origin;
         [p.dot(self.u), p.dot(self.v)]
@@ -140,7 +140,7 @@ impl Ground {
     }
 }
 
-/// The largest of 1, 2, 5 · 10ⁿ [m] not above `length`.
+/// The largest of 1, 2, 5 · 10ⁿ \[m\] not above `length`.
 pub(super) fn nice_length(length: f64) -> f64 {
     let decade = 10.0_f64.powf((length * (1.0 + 1e-9)).log10().floor());
     let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * decade <= length * (1.0 + 1e-9)).unwrap_or(1.0);

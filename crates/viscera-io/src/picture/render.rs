@@ -131,7 +131,7 @@ impl Painter<'_> {
     fn solid(&self, index: u32, place: [f64; 2]) -> (Light, Option<Surface>) {
         let Some(facet) = self.facets.get(index as usize) else { return self.behind(place) };
         let hit = facet.at(place);
-        let viewer = self.view.to_viewer(hit.position).cast();
+        let viewer = self.view.towards_viewer(hit.position).cast();
         let normal = hit.normal.cast();
         let mut colour = self.studio.shade(facet.finish, hit.colour, normal, viewer);
         if facet.wireframe {
@@ -154,7 +154,7 @@ impl Painter<'_> {
     /// `behind` seen through a ghost: denser where the ghost is seen edge-on, so that its outline reads.
     fn veil(&self, facet: &Facet, place: [f64; 2], behind: Light) -> Light {
         let hit = facet.at(place);
-        let viewer = self.view.to_viewer(hit.position).cast::<f32>();
+        let viewer = self.view.towards_viewer(hit.position).cast::<f32>();
         let normal = hit.normal.cast::<f32>();
         let grazing = 1.0 - normal.dot(viewer).clamp(0.0, 1.0);
         let mut density = 0.20 + 0.5 * grazing * grazing * grazing;

@@ -45,7 +45,7 @@ impl Picture {
         self.solids.push(solid);
         self
     }
-    /// Adds a force [N] at `point` [m] as an arrow of `scale` metres per newton. A force of zero draws nothing.
+    /// Adds a force \[N\] at `point` \[m\] as an arrow of `scale` metres per newton. A force of zero draws nothing.
     pub fn force(mut self, point: [f64; 3], force: [f64; 3], scale: f64) -> Self {
         let point = Vec3::from(point);
         self.arrows.push((point, point + Vec3::from(force) * scale));
@@ -105,7 +105,7 @@ impl Picture {
         Ok(Camera::framing(low, high))
     }
 
-    /// Everything that is drawn as a surface; `size` [m] measures what has no size of its own.
+    /// Everything that is drawn as a surface; `size` \[m\] measures what has no size of its own.
     pub(super) fn surfaces(&self, size: f64) -> Vec<Body> {
         let mut surfaces = self.bodies.clone();
         surfaces.extend(self.solids.iter().map(|solid| solid.body.clone()));

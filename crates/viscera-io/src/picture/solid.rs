@@ -17,15 +17,15 @@ pub struct Solid {
 pub struct Tool;
 
 impl Tool {
-    /// A rod from `a` to `b` [m] with round ends of `radius` [m], in steel.
+    /// A rod from `a` to `b` \[m\] with round ends of `radius` \[m\], in steel.
     pub fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Solid {
         Self::tapered(a, b, radius, radius)
     }
-    /// A ball [m], in steel.
+    /// A ball \[m\], in steel.
     pub fn sphere(centre: [f64; 3], radius: f64) -> Solid {
         Self::tapered(centre, centre, radius, radius)
     }
-    /// A rod whose radius goes from `radius_a` to `radius_b` [m], with round ends, in steel.
+    /// A rod whose radius goes from `radius_a` to `radius_b` \[m\], with round ends, in steel.
     pub fn tapered(a: [f64; 3], b: [f64; 3], radius_a: f64, radius_b: f64) -> Solid {
         let length = (Vec3::from(b) - Vec3::from(a)).norm();
         let quarter = |i: usize| (i as f64 / QUARTER as f64 * std::f64::consts::FRAC_PI_2).sin_cos();
@@ -37,7 +37,7 @@ impl Tool {
 }
 
 impl Solid {
-    /// An arrow from `start` to `end` [m] with a shaft of `radius` [m].
+    /// An arrow from `start` to `end` \[m\] with a shaft of `radius` \[m\].
     pub(super) fn arrow(start: Vec3<f64>, end: Vec3<f64>, radius: f64) -> Self {
         let length = (end - start).norm();
         let head = (radius * 6.0).min(length * 0.6);
@@ -57,7 +57,7 @@ impl Solid {
     }
 }
 
-/// Turns `profile`, pairs (along the axis, radius) [m], about the axis from `a` towards `b`.
+/// Turns `profile`, pairs (along the axis, radius) \[m\], about the axis from `a` towards `b`.
 fn lathe(a: Vec3<f64>, b: Vec3<f64>, profile: &[[f64; 2]], crease: f64) -> Body {
     let axis = (b - a).normalized().unwrap_or(Vec3::new(0.0, 1.0, 0.0));
     let across = if axis.x.abs() < 0.7 { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
