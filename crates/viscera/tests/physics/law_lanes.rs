@@ -9,7 +9,7 @@ use crate::support::{Random, assert_near};
 /// Every instruction set of this processor, the poorest first.
 pub(crate) fn levels() -> Vec<Level> {
     let best = dispatch_level();
-    let mut levels = vec![Level::fallback()];
+    let mut levels = vec![Level::baseline()];
     #[cfg(target_arch = "x86_64")]
     {
         levels.extend(best.as_sse2().map(Level::Sse2));

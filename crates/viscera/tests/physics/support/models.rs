@@ -86,6 +86,18 @@ pub(crate) fn examples() -> Vec<(Tissue, bool)> {
     LawKind::ALL.iter().map(|kind| kind.visit(Example)).collect()
 }
 
+/// A tissue of this law with these parameter values, cell after cell.
+pub(crate) fn of_values<'a>(kind: LawKind, values: impl Iterator<Item = &'a [f64]>) -> Tissue {
+    struct OfValues<I>(I);
+    impl<'a, I: Iterator<Item = &'a [f64]>> LawVisitor for OfValues<I> {
+        type Output = Tissue;
+        fn visit<L: LawFamily>(self) -> Tissue {
+            Tissue::per_cell(&self.0.map(L::from_values).collect::<Vec<_>>()).unwrap()
+        }
+    }
+    kind.visit(OfValues(values))
+}
+
 /// A tissue of this law whose moduli vary from cell to cell, between half and one and a half times the example's.
 pub(crate) fn uneven(kind: LawKind, cells: usize, random: &mut Random) -> Tissue {
     struct Uneven<'a>(usize, &'a mut Random);
