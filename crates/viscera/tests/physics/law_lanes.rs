@@ -68,8 +68,7 @@ fn lanes_equal_scalars<T: Scalar>() {
             let scalar = L::at::<T>(&values);
             let tolerance = 64.0 * T::EPSILON.to_f64();
             for level in levels() {
-                let (energy, stress, tangent) =
-                    dispatch!(level, simd => in_lanes::<_, T, L>(simd, &values, &f, &df));
+                let (energy, stress, tangent) = dispatch!(level, simd => in_lanes::<_, T, L>(simd, &values, &f, &df));
                 for lane in 0..T::LANES {
                     let what = format!("{} over {} at {level:?}, lane {lane}", L::NAME, T::NAME);
                     let expected = scalar.energy(&f[lane]).to_f64();

@@ -34,7 +34,8 @@ fn small_strains_meet_the_stiffness_that_the_law_declares() {
                 let df = random.matrix();
                 let strain = df.symmetric_part();
                 let along = strain.quadratic(rest.direction);
-                let hooke: Matrix = (Sym3::diagonal(rest.lame.lambda * strain.trace()) + strain * (2.0 * rest.lame.mu)
+                let hooke: Matrix = (Sym3::diagonal(rest.lame.lambda * strain.trace())
+                    + strain * (2.0 * rest.lame.mu)
                     + Sym3::square(rest.direction) * (2.0 * rest.fibre_stiffness * along))
                     .into();
                 assert_near(&law.tangent(&Matrix::IDENTITY, &df).columns, &hooke.columns, 1e-13, L::NAME);

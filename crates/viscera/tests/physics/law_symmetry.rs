@@ -24,7 +24,8 @@ fn objective_laws_and_only_they_ignore_rotations_in_space() {
                 }
             }
             // A quarter turn of tissue at rest: strains of −1 for a law that takes it for a deformation.
-            let quarter = Matrix::from_columns(Vec3::new(0.0, 1.0, 0.0), Vec3::new(-1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0));
+            let quarter =
+                Matrix::from_columns(Vec3::new(0.0, 1.0, 0.0), Vec3::new(-1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0));
             let mu = law.at_rest().lame.mu;
             assert_eq!(L::OBJECTIVE, law.energy(&quarter) <= 1e-13 * mu, "{}: objective or not?", L::NAME);
         }
@@ -79,7 +80,8 @@ fn isotropic_laws_have_no_direction_and_fibred_ones_have_one() {
                     assert_close(turned(q), energy, 1e-13, L::NAME);
                 } else {
                     assert_close(turned(turn_about(rest.direction, random.signed() * 3.0)), energy, 1e-12, L::NAME);
-                    let half_turn = turn_about(rest.direction.cross(random.vector()).normalized().unwrap(), std::f64::consts::PI);
+                    let half_turn =
+                        turn_about(rest.direction.cross(random.vector()).normalized().unwrap(), std::f64::consts::PI);
                     assert_close(turned(half_turn), energy, 1e-12, L::NAME);
                     assert!((turned(q) - energy).abs() > 1e-6 * energy, "{}: fibres are not felt", L::NAME);
                 }

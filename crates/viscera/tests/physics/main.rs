@@ -4,7 +4,7 @@
 //! `reference_*` compare with the cases in `tests/data/references`.
 
 mod law_derivatives;
-//mod law_lanes;
+mod law_lanes;
 mod law_rest;
 mod law_symmetry;
 mod math;

@@ -1,6 +1,8 @@
 //! The adaptive tensor-mass model: linear where vertices hardly move, full where they do (RR-4028, section 6).
 
-use viscera::material::{LawFamily, LinearElastic, StVenantKirchhoff, Tissue, TransverseLinear, TransverseStVenantKirchhoff};
+use viscera::material::{
+    LawFamily, LinearElastic, StVenantKirchhoff, Tissue, TransverseLinear, TransverseStVenantKirchhoff,
+};
 use viscera::mesh::VolumeMesh;
 use viscera::model::{ForceModel, LinearTensorMass, ModelRecipe, TensorMass};
 

@@ -2,7 +2,9 @@
 
 use viscera::mesh::VolumeMesh;
 
-use crate::support::{Evaluate, Random, Vector, assert_near, deformed, hex_mesh, largest, models_and_penalty, tet_mesh};
+use crate::support::{
+    Evaluate, Random, Vector, assert_near, deformed, hex_mesh, largest, models_and_penalty, tet_mesh,
+};
 
 fn meshes() -> [VolumeMesh; 2] {
     [tet_mesh([2, 2, 2]).into(), hex_mesh([2, 2, 2]).into()]
@@ -70,9 +72,8 @@ fn products_are_the_derivative_of_forces() {
             let (h, tolerance) = if named.name == "volume penalty" { (1e-4 * h, 1e-6) } else { (h, 1e-9) };
             let forces = |s: f64| named.model.forces(&moved(&x, &dx, s * h));
             let (back2, back, ahead, ahead2) = (forces(-2.0), forces(-1.0), forces(1.0), forces(2.0));
-            let slopes: Vec<_> = (0..x.len())
-                .map(|i| ((ahead[i] - back[i]) * 8.0 - (ahead2[i] - back2[i])) / (12.0 * h))
-                .collect();
+            let slopes: Vec<_> =
+                (0..x.len()).map(|i| ((ahead[i] - back[i]) * 8.0 - (ahead2[i] - back2[i])) / (12.0 * h)).collect();
             assert_near(&named.model.product(&x, &dx), &slopes, tolerance, &named.name);
         }
     }

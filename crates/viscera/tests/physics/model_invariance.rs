@@ -7,8 +7,8 @@ use viscera::mesh::{Mesh, TetMesh, VolumeMesh};
 use viscera::model::{ForceModel, VolumePenalty};
 
 use crate::support::{
-    Evaluate, KEEP_VOLUME, Named, Random, Vector, assert_close, assert_near, deformed, examples, hex_mesh, largest, models,
-    models_and_penalty, tet_mesh,
+    Evaluate, KEEP_VOLUME, Named, Random, Vector, assert_close, assert_near, deformed, examples, hex_mesh, largest,
+    models, models_and_penalty, tet_mesh,
 };
 
 fn meshes() -> [VolumeMesh; 2] {
@@ -150,7 +150,9 @@ fn single_precision_agrees_with_double() {
         let x: Vec<Vector> = single.iter().map(|x| x.cast()).collect();
         let dx: Vec<Vec3<f32>> = random.vectors(x.len(), 1.0).iter().map(|dx| dx.cast()).collect();
         let exact_dx: Vec<Vector> = dx.iter().map(|dx| dx.cast()).collect();
-        for ((play, _), (exact, _)) in models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh)) {
+        for ((play, _), (exact, _)) in
+            models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh))
+        {
             let tolerance = 100.0 * f64::from(f32::EPSILON);
             assert_near(&play.model.forces(&single), &exact.model.forces(&x), tolerance, &play.name);
             let product = exact.model.product(&x, &exact_dx);
@@ -165,7 +167,9 @@ fn single_precision_agrees_with_double() {
 fn rest_in_single_precision_trembles_no_more_than_its_coordinates() {
     for mesh in meshes() {
         let x: Vec<Vec3<f32>> = mesh.nodes().iter().map(|x| x.cast()).collect();
-        for ((play, _), (exact, _)) in models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh)) {
+        for ((play, _), (exact, _)) in
+            models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh))
+        {
             let everywhere = Random::new(65).vectors(x.len(), 1.0);
             let stiffness = largest(&exact.model.product(mesh.nodes(), &everywhere));
             let bound = 8.0 * f64::from(f32::EPSILON) * mesh.size() * stiffness.max(KEEP_VOLUME * mesh.size());

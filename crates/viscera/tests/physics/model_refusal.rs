@@ -31,10 +31,14 @@ fn refusals_say_what_to_take_instead() {
     for &kind in ModelKind::ALL {
         for (tissue, _) in examples() {
             let Some(message) = refusal(kind, &tissue, &tets) else { continue };
-            assert!(message.contains(&format!("`{kind}`")) && message.contains(&format!("`{}`", tissue.kind())), "{message}");
+            assert!(
+                message.contains(&format!("`{kind}`")) && message.contains(&format!("`{}`", tissue.kind())),
+                "{message}"
+            );
             let (_, advice) = message.split_once(": ").unwrap();
             let known = |name: &str| {
-                ModelKind::ALL.iter().any(|kind| kind.info().name == name) || LawKind::ALL.iter().any(|law| law.name() == name)
+                ModelKind::ALL.iter().any(|kind| kind.info().name == name)
+                    || LawKind::ALL.iter().any(|law| law.name() == name)
             };
             let named: Vec<_> = advice.split('`').skip(1).step_by(2).collect();
             assert!(!named.is_empty() && named.iter().all(|name| known(name)), "{message}");
@@ -95,7 +99,8 @@ fn meshes_and_tissues_that_do_not_fit_are_refused() {
     let cells = mesh.cells.len();
     let tissue = uneven(LawKind::StVenantKirchhoff, cells - 1, &mut Random::new(81));
     for kind in [ModelKind::TensorMass, ModelKind::TotalLagrangian] {
-        let expected = format!("{} laws are given for {cells} cells; give one for each cell, or one for all", cells - 1);
+        let expected =
+            format!("{} laws are given for {cells} cells; give one for each cell, or one for all", cells - 1);
         assert_eq!(refusal(kind, &tissue, &mesh.clone().into()).unwrap(), expected);
         let empty = VolumeMesh::from(TetMesh::new(vec![Vector::ZERO], vec![]));
         let message = refusal(kind, &stvk(), &empty).unwrap();

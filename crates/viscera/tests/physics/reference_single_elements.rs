@@ -6,9 +6,7 @@ use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
 use viscera::model::total_lagrangian::GaussRule;
 use viscera::model::{ForceModel, ModelRecipe, TotalLagrangian};
 
-use crate::support::{
-    Evaluate, Reference, Vector, assert_close, assert_near, models, number, plain, vector, vectors,
-};
+use crate::support::{Evaluate, Reference, Vector, assert_close, assert_near, models, number, plain, vector, vectors};
 
 fn moved(mesh: &VolumeMesh, displacement: &Value) -> Vec<Vector> {
     mesh.nodes().iter().zip(vectors(displacement)).map(|(&rest, u)| rest + u).collect()

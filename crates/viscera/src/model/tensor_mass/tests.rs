@@ -110,8 +110,8 @@ fn energy_and_forces_split_by_degree_as_in_the_reference() {
         let even = 0.5 * (one + minus);
         let quartic = (two - 8.0 * cubic - 4.0 * even) / 12.0;
         let split = &expected["energy_split_J"];
-        let pairs =
-            [(even - quartic, "quadratic"), (cubic, "cubic"), (quartic, "quartic")].map(|(e, key)| (e, number(&split[key])));
+        let pairs = [(even - quartic, "quadratic"), (cubic, "cubic"), (quartic, "quartic")]
+            .map(|(e, key)| (e, number(&split[key])));
         assert_entries(&pairs, "energy by degree");
 
         let forces = |s: f64| tables.forces(&u, s);
@@ -280,7 +280,10 @@ fn tables_after_thousands_of_removals_equal_tables_assembled_afresh() {
             let distinct = key.1.iter().collect::<std::collections::BTreeSet<_>>().len();
             let scale = largest[&(key.0, distinct)];
             for (actual, expected) in values.iter().zip(&expected[key]) {
-                assert!((actual - expected).abs() <= 1e-12 * scale, "{key:?} with {keep} left: {actual}, not {expected}");
+                assert!(
+                    (actual - expected).abs() <= 1e-12 * scale,
+                    "{key:?} with {keep} left: {actual}, not {expected}"
+                );
             }
         }
         // nodes without cells hold nothing on either side
