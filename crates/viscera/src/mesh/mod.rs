@@ -4,15 +4,20 @@
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
 mod error;
-pub mod generate;
+mod generate;
+mod isosurface_stuffing;
+mod quality;
 mod region;
+mod signed_distance;
 mod surface_mesh;
 mod topology;
 mod volume_mesh;
 
 pub use error::MeshError;
-pub use generate::{CubeCut, GenerateError, TubeDivisions};
+pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
+pub use quality::{QualityReport, Spread, TetQuality};
 pub use region::NamedRegion;
+pub use signed_distance::SignedDistance;
 pub use surface_mesh::SurfaceMesh;
 pub use topology::{Face, TetTopology, cells_of_nodes};
 pub use volume_mesh::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, TET_EDGES, TET_FACES, TetMesh, VolumeMesh};
