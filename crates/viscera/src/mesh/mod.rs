@@ -9,8 +9,11 @@ mod isosurface_stuffing;
 mod quality;
 mod region;
 mod signed_distance;
+mod surface_check;
+mod surface_filling;
 mod surface_mesh;
 mod topology;
+mod triangle_tree;
 mod volume_mesh;
 
 pub use error::MeshError;
@@ -18,8 +21,11 @@ pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
 pub use quality::{QualityReport, Spread, TetQuality};
 pub use region::NamedRegion;
 pub use signed_distance::SignedDistance;
+pub use surface_check::{Hole, NonManifoldEdge, SurfaceError, SurfaceReport};
+pub use surface_filling::FillingReport;
 pub use surface_mesh::SurfaceMesh;
 pub use topology::{Face, TetTopology, cells_of_nodes};
+pub use triangle_tree::TriangleTree;
 pub use volume_mesh::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, TET_EDGES, TET_FACES, TetMesh, VolumeMesh};
 
 use crate::math::Vec3;

@@ -23,19 +23,21 @@ impl Liver {
 
     /// Distance for a length of one.
     fn unit_distance(p: Point) -> f64 {
-        // The two lobes; the left one is slim and leans up to its tip.
-        let right = ellipsoid(p, [-0.19, 0.0, 0.0], [0.3, 0.265, 0.23]);
-        let left = ellipsoid(turned(p, 0.12), [0.2, 0.055, 0.03], [0.3, 0.105, 0.135]);
-        let lobes = smooth_union(right, left, 0.09);
-        // The sharp lower edge in front: everything behind and below a slanting plane is cut away, and hollowed further by
-        // stomach and kidney.
-        let underside = plane(p, [0.13, -0.93, -0.35], 0.115);
-        let stomach = ellipsoid(p, [0.26, -0.2, -0.12], [0.22, 0.18, 0.17]);
-        let kidney = ellipsoid(p, [-0.28, -0.31, -0.13], [0.15, 0.16, 0.12]);
-        let solid = smooth_cut(smooth_intersection(lobes, underside, 0.045), smooth_union(stomach, kidney, 0.05), 0.04);
-        // The fissure of the round ligament, open below and in front.
-        let fissure = ellipsoid(turned(p, -0.1), [0.065, -0.13, 0.13], [0.02, 0.13, 0.13]);
-        smooth_cut(solid, fissure, 0.03)
+        // The dome under the diaphragm: thick and round on the right, running out thin to the left.
+        let right = ellipsoid(p, [-0.19, -0.1, -0.01], [0.3, 0.33, 0.22]);
+        let left = ellipsoid(turned(p, 0.1), [0.16, 0.02, 0.0], [0.36, 0.125, 0.14]);
+        let dome = smooth_union(right, left, 0.2);
+        // The underside looks down, back and to the left, so that the lower edge in front is the sharp one; stomach and
+        // kidney press into it.
+        let underside = plane(turned(p, 0.33), [0.0, -0.86, -0.5], 0.08);
+        let stomach = ellipsoid(p, [0.24, -0.14, -0.06], [0.2, 0.16, 0.14]);
+        let kidney = ellipsoid(p, [-0.26, -0.255, -0.15], [0.12, 0.15, 0.1]);
+        let organ = smooth_intersection(dome, underside, 0.06);
+        let organ = smooth_cut(organ, smooth_union(stomach, kidney, 0.05), 0.04);
+        // The fissure of the round ligament: a notch in the lower edge, and a furrow up the front where the lobes meet.
+        let notch = ellipsoid(turned(p, -0.15), [0.06, -0.2, 0.08], [0.024, 0.15, 0.16]);
+        let furrow = ellipsoid(p, [0.07, 0.0, 0.178], [0.024, 0.2, 0.05]);
+        smooth_cut(organ, smooth_union(notch, furrow, 0.04), 0.03)
     }
 }
 

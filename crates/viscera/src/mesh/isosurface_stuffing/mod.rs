@@ -13,7 +13,7 @@ mod skin;
 mod stencil;
 mod warp;
 
-use super::{GenerateError, Point, SignedDistance, TetMesh};
+use super::{GenerateError, SignedDistance, TetMesh};
 use lattice::Lattice;
 use skin::{Skin, crossings};
 
@@ -63,6 +63,7 @@ impl TetMesh {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Point;
     use super::skin::Cut;
     use super::warp::{TOO_CLOSE_LONG, TOO_CLOSE_SHORT};
     use super::*;
