@@ -1,1 +1,3 @@
-//! Part of [Viscera](viscera).
+//! Meshes in, results and pictures out: part of [Viscera](viscera).
+
+pub mod picture;

@@ -4,10 +4,12 @@
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
 mod error;
+mod gauss;
 mod generate;
 mod isosurface_stuffing;
 mod quality;
 mod region;
+mod select;
 mod signed_distance;
 mod surface_check;
 mod surface_filling;
@@ -17,9 +19,11 @@ mod triangle_tree;
 mod volume_mesh;
 
 pub use error::MeshError;
+pub use gauss::{GaussPoint, GaussRule, hexahedron_volume};
 pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
 pub use quality::{QualityReport, Spread, TetQuality};
 pub use region::NamedRegion;
+pub use select::{Region, RegionError};
 pub use signed_distance::SignedDistance;
 pub use surface_check::{Hole, NonManifoldEdge, SurfaceError, SurfaceReport};
 pub use surface_filling::FillingReport;
