@@ -3,13 +3,16 @@
 //! Nodes are numbered from 0 and measured in metres. Corners follow the Gmsh/VTK order: a tetrahedron (a, b, c, d) has
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
+mod check;
 mod error;
+mod mesh_report;
 mod region;
 mod surface_mesh;
 mod topology;
 mod volume_mesh;
 
 pub use error::MeshError;
+pub use mesh_report::MeshReport;
 pub use region::NamedRegion;
 pub use surface_mesh::SurfaceMesh;
 pub use topology::{Face, TetTopology, cells_of_nodes};
