@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, f32x8, f64x4};
 
-use super::Real;
+use super::{Real, Vec3};
 
 /// A floating-point number that a world can be simulated in: `f32` for play, `f64` for statics and validation.
 pub trait Scalar: Real<Mask = bool> + PartialOrd + Default + Display + LowerExp + 'static {
@@ -133,4 +133,30 @@ impl_lanes!(f64, f64x4, 4, "f64");
 pub fn dispatch_level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(Level::new)
+}
+
+/// The widest batch of any scalar.
+pub const MAX_LANES: usize = 8;
+
+/// Reads one vector per lane: lane `i` gets `values[nodes[i]]`.
+#[inline(always)]
+pub fn gather<T: Scalar, S: Simd>(simd: S, values: &[Vec3<T>], nodes: &[u32]) -> Vec3<T::Lanes<S>> {
+    let (mut x, mut y, mut z) = ([T::ZERO; MAX_LANES], [T::ZERO; MAX_LANES], [T::ZERO; MAX_LANES]);
+    for (lane, &node) in nodes[..T::LANES].iter().enumerate() {
+        let value = values[node as usize];
+        (x[lane], y[lane], z[lane]) = (value.x, value.y, value.z);
+    }
+    Vec3::new(T::Lanes::<S>::load(simd, &x), T::Lanes::<S>::load(simd, &y), T::Lanes::<S>::load(simd, &z))
+}
+
+/// Adds one vector per lane: `values[nodes[i]]` grows by lane `i`, lane after lane, so lanes may name the same node.
+#[inline(always)]
+pub fn scatter_add<T: Scalar, S: Simd>(vector: Vec3<T::Lanes<S>>, nodes: &[u32], values: &mut [Vec3<T>]) {
+    let (mut x, mut y, mut z) = ([T::ZERO; MAX_LANES], [T::ZERO; MAX_LANES], [T::ZERO; MAX_LANES]);
+    vector.x.store(&mut x);
+    vector.y.store(&mut y);
+    vector.z.store(&mut z);
+    for (lane, &node) in nodes[..T::LANES].iter().enumerate() {
+        values[node as usize] += Vec3::new(x[lane], y[lane], z[lane]);
+    }
 }

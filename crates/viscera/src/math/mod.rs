@@ -1,12 +1,14 @@
 //! Numbers, lanes, small vectors and matrices: one text for `f32`, `f64` and SIMD lanes.
 
+mod dual;
 mod lanes;
 mod mat3;
 mod real;
 mod sym3;
 mod vec3;
 
-pub use lanes::{Lanes, Scalar, dispatch_level};
+pub use dual::Dual;
+pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level, gather, scatter_add};
 pub use mat3::Mat3;
 pub use real::Real;
 pub use sym3::Sym3;

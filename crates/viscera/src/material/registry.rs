@@ -1,0 +1,59 @@
+//! The only list of laws.
+
+use super::{LawFamily, LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff};
+
+/// Something that is done for one law, whichever it is: the way from a [`LawKind`] back to its type.
+pub trait LawVisitor {
+    /// What comes of it.
+    type Output;
+    /// Does it for the law `L`.
+    fn visit<L: LawFamily>(self) -> Self::Output;
+}
+
+macro_rules! laws {
+    ($($law:ident),+ $(,)?) => {
+        /// Every law, by kind.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum LawKind {
+            $(
+                #[doc = concat!("[`", stringify!($law), "`].")]
+                $law,
+            )+
+        }
+
+        impl LawKind {
+            /// Every law there is.
+            pub const ALL: &'static [Self] = &[$(Self::$law),+];
+
+            /// Name in scenes and messages.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$law => <$law as LawFamily>::NAME,)+
+                }
+            }
+
+            /// Does something for the type that this kind stands for.
+            pub fn visit<V: LawVisitor>(self, visitor: V) -> V::Output {
+                match self {
+                    $(Self::$law => visitor.visit::<$law>(),)+
+                }
+            }
+        }
+
+        $(
+            impl From<$law> for LawKind {
+                fn from(_: $law) -> Self {
+                    Self::$law
+                }
+            }
+        )+
+    };
+}
+
+laws!(LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff);
+
+impl std::fmt::Display for LawKind {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(self.name())
+    }
+}

@@ -1,0 +1,101 @@
+//! St Venant–Kirchhoff elasticity: the smallest law that is right under large rotations.
+//!
+//! ψ(F) = λ/2 (tr E)² + μ tr(E²),   E = ½(FᵀF − I)
+//! P(F) = F S,   S = λ tr(E) I + 2μ E
+//!
+//! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 6.
+//! Range: moderate strain. Softens in compression (confined: unstable below a stretch of 1/√3) and cannot tell F from
+//! its mirror image, so an inverted element stays inverted.
+
+use super::linear::isotropic_bound;
+use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness, StrainMeasure, green_strain};
+use crate::math::{Mat3, Real, Sym3};
+
+/// Parameters λ, μ [Pa].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StVenantKirchhoff<R = f64> {
+    /// First Lamé parameter λ [Pa], > −2μ/3.
+    pub lambda: R,
+    /// Shear modulus μ [Pa], > 0.
+    pub mu: R,
+}
+
+impl StVenantKirchhoff {
+    /// From the Lamé parameters.
+    pub fn new(lame: Lame) -> Self {
+        Self { lambda: lame.lambda, mu: lame.mu }
+    }
+
+    /// From Young's modulus [Pa] and Poisson's ratio.
+    ///
+    /// # Errors
+    /// As [`Lame::from_young_poisson`].
+    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
+        Lame::from_young_poisson(young, poisson).map(Self::new)
+    }
+}
+
+impl<R: Real> StVenantKirchhoff<R> {
+    /// Second Piola–Kirchhoff stress S(E), linear in E.
+    #[inline(always)]
+    fn second_stress(&self, strain: Sym3<R>) -> Sym3<R> {
+        strain.mul_add(self.mu.double(), Sym3::diagonal(self.lambda * strain.trace()))
+    }
+}
+
+impl<R: Real> Law<R> for StVenantKirchhoff<R> {
+    #[inline(always)]
+    fn energy(&self, f: &Mat3<R>) -> R {
+        let strain = green_strain(f);
+        (self.lambda * strain.trace().squared()).half() + self.mu * strain.squared_norm()
+    }
+
+    #[inline(always)]
+    fn stress(&self, f: &Mat3<R>) -> Mat3<R> {
+        *f * self.second_stress(green_strain(f))
+    }
+
+    // dP = dF S + F dS with dE = sym(Fᵀ dF)
+    #[inline(always)]
+    fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
+        let d_strain = (f.transpose() * *df).symmetric_part();
+        *df * self.second_stress(green_strain(f)) + *f * self.second_stress(d_strain)
+    }
+
+    // dF:dP = S:(dFᵀdF) + dE:C:dE with |dE| ≤ ‖F‖ |dF|
+    #[inline(always)]
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R {
+        let stress = self.second_stress(green_strain(f)).largest_eigenvalue_bound();
+        let stretch = f.gram().largest_eigenvalue_bound();
+        stretch.mul_add(isotropic_bound(self.lambda, self.mu), stress.max(stress.zero_like()))
+    }
+}
+
+impl LawFamily for StVenantKirchhoff {
+    type At<R: Real> = StVenantKirchhoff<R>;
+
+    const NAME: &'static str = "st-venant-kirchhoff";
+    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
+    const OBJECTIVE: bool = true;
+
+    #[inline(always)]
+    fn at<R: Real>(values: &[R]) -> StVenantKirchhoff<R> {
+        StVenantKirchhoff { lambda: values[0], mu: values[1] }
+    }
+
+    fn from_values(values: &[f64]) -> Self {
+        Self::at(values)
+    }
+
+    fn values(&self) -> Vec<f64> {
+        vec![self.lambda, self.mu]
+    }
+
+    fn at_rest(&self) -> RestStiffness {
+        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
+    }
+
+    fn quadratic(&self) -> Option<QuadraticLaw> {
+        Some(QuadraticLaw { strain: StrainMeasure::Green, stiffness: self.at_rest() })
+    }
+}

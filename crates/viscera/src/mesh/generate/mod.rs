@@ -1,0 +1,12 @@
+//! Meshes of simple shapes, made from their measures. One shape is one file.
+
+mod boundary_regions;
+mod box_grid;
+mod cylinder;
+mod error;
+mod extrusion;
+mod tube;
+
+pub use box_grid::CubeCut;
+pub use error::GenerateError;
+pub use tube::TubeDivisions;

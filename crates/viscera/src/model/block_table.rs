@@ -1,0 +1,60 @@
+/// A table whose rows lie in blocks of as many rows as a batch has lanes, column after column within a block: a batch of
+/// lanes reads one column of its rows as one contiguous load.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BlockTable<V> {
+    lanes: usize,
+    columns: usize,
+    rows: usize,
+    values: Vec<V>,
+}
+
+impl<V: Copy> BlockTable<V> {
+    /// A table of `rows` rows, padded with further rows to whole blocks, every entry `fill`.
+    pub(crate) fn new(lanes: usize, rows: usize, columns: usize, fill: V) -> Self {
+        Self { lanes, columns, rows, values: vec![fill; rows.div_ceil(lanes) * lanes * columns] }
+    }
+
+    /// Rows, without the padding.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Rows, with the padding.
+    pub(crate) fn padded_rows(&self) -> usize {
+        self.values.len() / self.columns
+    }
+
+    /// Size of the stored numbers [bytes].
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.values.as_slice())
+    }
+
+    #[inline(always)]
+    fn index(&self, row: usize, column: usize) -> usize {
+        (row / self.lanes * self.columns + column) * self.lanes + row % self.lanes
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, row: usize, column: usize) -> V {
+        self.values[self.index(row, column)]
+    }
+
+    #[inline(always)]
+    pub(crate) fn get_mut(&mut self, row: usize, column: usize) -> &mut V {
+        let index = self.index(row, column);
+        &mut self.values[index]
+    }
+
+    /// Writes a row, from its first column on.
+    pub(crate) fn set_row(&mut self, row: usize, values: impl IntoIterator<Item = V>) {
+        for (column, value) in values.into_iter().enumerate() {
+            *self.get_mut(row, column) = value;
+        }
+    }
+
+    /// Blocks of `lanes · columns` entries.
+    #[inline(always)]
+    pub(crate) fn blocks(&self) -> std::slice::ChunksExact<'_, V> {
+        self.values.chunks_exact(self.lanes * self.columns)
+    }
+}

@@ -1,0 +1,87 @@
+//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
+
+mod block_table;
+mod error;
+pub mod frequency;
+pub mod linear_tensor_mass;
+mod registry;
+pub mod tensor_mass;
+mod tet_loop;
+pub mod total_lagrangian;
+pub mod volume_penalty;
+
+pub use error::ModelError;
+pub use linear_tensor_mass::LinearTensorMass;
+pub use registry::{ModelInfo, ModelKind};
+pub use tensor_mass::TensorMass;
+pub use total_lagrangian::TotalLagrangian;
+pub use volume_penalty::VolumePenalty;
+
+use crate::material::Tissue;
+use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+
+/// Nodal forces of a body, their energy and their derivative, at given node positions.
+///
+/// A model is built for one mesh and knows its rest shape. Positions, forces and products are arrays with one vector per
+/// node of that mesh; calls with other lengths are a programming error and panic. Nothing is allocated after building.
+pub trait ForceModel<T: Scalar>: Send + Sync {
+    /// Name in scenes and messages.
+    fn name(&self) -> &'static str;
+
+    /// Adds the internal forces +∂W/∂x [N] at positions `x` [m] to `out`: what holds the nodes. The force that the
+    /// tissue exerts on them is the negative.
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Stored energy W(x) [J].
+    fn energy(&self, x: &[Vec3<T>]) -> f64;
+
+    /// Takes cells out of the body; their force, energy and stiffness are gone for good. A cell that is out already is
+    /// left alone.
+    fn remove(&mut self, cells: &[u32]);
+
+    /// Whether the node follows the full law at displacement `u` [m]; false where an adaptive model is linear.
+    fn is_nonlinear_at(&self, _displacement: Vec3<T>) -> bool {
+        true
+    }
+
+    /// Size of the numbers that one evaluation of the forces reads from the model [bytes].
+    fn bytes(&self) -> usize;
+
+    /// A copy, for snapshots: a cut changes the model.
+    fn clone_box(&self) -> Box<dyn ForceModel<T>>;
+}
+
+/// Memory that models use while they compute and that means nothing between calls.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch<T> {
+    /// Per node: three components, and a fourth number that is the model's own.
+    pub(crate) nodal: Vec<[T; 4]>,
+    /// A second such array.
+    pub(crate) nodal_direction: Vec<[T; 4]>,
+}
+
+impl<T: Scalar> Scratch<T> {
+    /// Scratch for a body of `nodes` nodes.
+    pub fn new(nodes: usize) -> Self {
+        Self { nodal: vec![[T::ZERO; 4]; nodes], nodal_direction: vec![[T::ZERO; 4]; nodes] }
+    }
+}
+
+/// What is needed to build a model for a mesh: what the user writes.
+pub trait ModelRecipe<T: Scalar>: std::fmt::Debug + Send + Sync {
+    /// The kind of model.
+    fn kind(&self) -> ModelKind;
+
+    /// The tissue that it is made of.
+    fn tissue(&self) -> &Tissue;
+
+    /// Builds the model.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the model supports neither the law nor the cells, or a cell has no volume.
+    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError>;
+}

@@ -1,0 +1,224 @@
+//! The loop over one kind of entity: gather displacements into lanes, apply the entity's force, scatter.
+
+use std::marker::PhantomData;
+
+use fearless_simd::{Simd, dispatch};
+
+use super::entity::{Corner, Entity, MAX_COLUMNS};
+use super::tensors::TetTensors;
+use crate::math::{Dual, Lanes, MAX_LANES, Real, Scalar, Vec3, dispatch_level, scatter_add};
+use crate::model::block_table::BlockTable;
+
+/// All entities of one kind, with the sums of the tensors of the tetrahedra that touch them.
+#[derive(Debug)]
+pub(crate) struct EntityLoop<T: Scalar, E, const NODES: usize> {
+    nodes: BlockTable<u32>,
+    stored: BlockTable<T>,
+    /// How many tetrahedra still touch each entity.
+    uses: Vec<u32>,
+    entity: PhantomData<E>,
+}
+
+impl<T: Scalar, E, const NODES: usize> Clone for EntityLoop<T, E, NODES> {
+    fn clone(&self) -> Self {
+        Self { nodes: self.nodes.clone(), stored: self.stored.clone(), uses: self.uses.clone(), entity: PhantomData }
+    }
+}
+
+/// Adds up tables in double precision before they are stored in the precision of play.
+pub(crate) struct Assembly<E, const NODES: usize> {
+    nodes: Vec<[u32; NODES]>,
+    sums: Vec<f64>,
+    uses: Vec<u32>,
+    entity: PhantomData<E>,
+}
+
+impl<E: Entity<NODES>, const NODES: usize> Assembly<E, NODES> {
+    pub(super) fn new(nodes: Vec<[u32; NODES]>) -> Self {
+        let count = nodes.len();
+        Self { nodes, sums: vec![0.0; count * E::COLUMNS], uses: vec![0; count], entity: PhantomData }
+    }
+
+    /// Adds a tetrahedron to the entity whose corners are its local corners `at`.
+    pub(super) fn add(&mut self, entity: usize, tensors: &TetTensors, at: [usize; NODES]) {
+        let sums = &mut self.sums[entity * E::COLUMNS..(entity + 1) * E::COLUMNS];
+        for (sum, value) in sums.iter_mut().zip(E::stored(tensors, at)) {
+            *sum += value;
+        }
+        self.uses[entity] += 1;
+    }
+
+    pub(super) fn finish<T: Scalar>(self) -> EntityLoop<T, E, NODES> {
+        let count = self.nodes.len();
+        let mut nodes = BlockTable::new(T::LANES, count, NODES, 0);
+        let mut stored = BlockTable::new(T::LANES, count, E::COLUMNS, T::ZERO);
+        for (row, corners) in self.nodes.into_iter().enumerate() {
+            nodes.set_row(row, corners);
+            stored.set_row(row, self.sums[row * E::COLUMNS..(row + 1) * E::COLUMNS].iter().map(|&v| T::from_f64(v)));
+        }
+        EntityLoop { nodes, stored, uses: self.uses, entity: PhantomData }
+    }
+}
+
+impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
+    /// Size of the stored numbers [bytes].
+    pub(crate) fn bytes(&self) -> usize {
+        self.nodes.bytes() + self.stored.bytes()
+    }
+
+    /// Numbers stored for an entity, for comparisons in tests.
+    #[cfg(test)]
+    pub(super) fn row(&self, entity: usize) -> impl Iterator<Item = T> + '_ {
+        (0..E::COLUMNS).map(move |column| self.stored.get(entity, column))
+    }
+
+    /// Takes a tetrahedron off the entity. The last one leaves exact zeros behind, not rounding errors.
+    pub(crate) fn subtract(&mut self, entity: usize, tensors: &TetTensors, at: [usize; NODES]) {
+        self.uses[entity] -= 1;
+        let last = self.uses[entity] == 0;
+        for (column, value) in E::stored(tensors, at).into_iter().take(E::COLUMNS).enumerate() {
+            let stored = self.stored.get_mut(entity, column);
+            *stored = if last { T::ZERO } else { T::from_f64(stored.to_f64() - value) };
+        }
+    }
+
+    /// Adds the forces at the displacements and weights in `nodal`.
+    ///
+    /// `ADAPTIVE` tells that weights may be 0: a batch whose corners are all linear is spared the non-linear part.
+    pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_forces_with::<_, ADAPTIVE>(simd, nodal, out));
+    }
+
+    #[inline(always)]
+    fn add_forces_with<S: Simd, const ADAPTIVE: bool>(&self, simd: S, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+        for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
+            let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
+            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
+            let linear = E::linear(&c, &corners);
+            let all_linear = ADAPTIVE && nodes.iter().all(|&node| nodal[node as usize][3] == T::ZERO);
+            let nonlinear = if all_linear { None } else { E::nonlinear(&c, &corners) };
+            let mut forces = linear.unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
+            if let Some(nonlinear) = nonlinear {
+                for node in 0..NODES {
+                    forces[node] = if ADAPTIVE {
+                        nonlinear[node].mul_add(corners[node].weight, forces[node])
+                    } else {
+                        forces[node] + nonlinear[node]
+                    };
+                }
+            } else if linear.is_none() {
+                continue;
+            }
+            scatter_corners(simd, forces, nodes, out);
+        }
+    }
+
+    /// Adds the derivative of the forces along the displacements in `direction`, weights held.
+    pub(crate) fn add_product(&self, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, out));
+    }
+
+    #[inline(always)]
+    fn add_product_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [Vec3<T>]) {
+        for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
+            let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
+            let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
+            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
+            let corners: [Corner<Dual<T::Lanes<S>>>; NODES] = dual_corners::<T::Lanes<S>, NODES>(&at, &along);
+            let mut constants = [Dual::constant(c[0]); MAX_COLUMNS];
+            for column in 0..E::COLUMNS {
+                constants[column] = Dual::constant(c[column]);
+            }
+            let mut forces = E::linear(&c, &along).unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
+            if let Some(nonlinear) = E::nonlinear(&constants, &corners) {
+                for node in 0..NODES {
+                    let [x, y, z] = nonlinear[node].to_array().map(|component| component.derivative);
+                    forces[node] = Vec3::new(x, y, z).mul_add(at[node].weight, forces[node]);
+                }
+            }
+            scatter_corners(simd, forces, nodes, out);
+        }
+    }
+
+    /// Energy of the full law [J], in double precision.
+    ///
+    /// W(u) = ∫₀¹ u·F(s u) ds; the integrand is a cubic in s, so two Gauss points are exact.
+    pub(crate) fn energy(&self, displacement: impl Fn(u32) -> Vec3<f64>) -> f64 {
+        const OFFSET: f64 = 0.288_675_134_594_812_9; // 1/(2√3)
+        let mut c = [0.0; MAX_COLUMNS];
+        let mut total = 0.0;
+        for row in 0..self.nodes.rows() {
+            for (column, value) in c[..E::COLUMNS].iter_mut().enumerate() {
+                *value = self.stored.get(row, column).to_f64();
+            }
+            let u: [Vec3<f64>; NODES] = std::array::from_fn(|i| displacement(self.nodes.get(row, i)));
+            for s in [0.5 - OFFSET, 0.5 + OFFSET] {
+                let corners = u.map(|u| Corner { u: u * s, weight: 1.0 });
+                for forces in [E::linear(&c, &corners), E::nonlinear(&c, &corners)].into_iter().flatten() {
+                    total += (0..NODES).map(|node| 0.5 * u[node].dot(forces[node])).sum::<f64>();
+                }
+            }
+        }
+        total
+    }
+}
+
+#[inline(always)]
+fn load_columns<T: Scalar, S: Simd>(simd: S, block: &[T], columns: usize) -> [T::Lanes<S>; MAX_COLUMNS] {
+    let mut c = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_COLUMNS];
+    for column in 0..columns {
+        c[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+    }
+    c
+}
+
+#[inline(always)]
+fn gather_corners<T: Scalar, S: Simd, const NODES: usize>(
+    simd: S,
+    nodal: &[[T; 4]],
+    nodes: &[u32],
+) -> [Corner<T::Lanes<S>>; NODES] {
+    let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+    let mut corners = [Corner { u: Vec3::splat(zero), weight: zero }; NODES];
+    for node in 0..NODES {
+        let mut columns = [[T::ZERO; MAX_LANES]; 4];
+        for (lane, &index) in nodes[node * T::LANES..(node + 1) * T::LANES].iter().enumerate() {
+            let value = nodal[index as usize];
+            for column in 0..4 {
+                columns[column][lane] = value[column];
+            }
+        }
+        let [x, y, z, weight] = columns.map(|column| T::Lanes::<S>::load(simd, &column));
+        corners[node] = Corner { u: Vec3::new(x, y, z), weight };
+    }
+    corners
+}
+
+#[inline(always)]
+fn dual_corners<R: Real, const NODES: usize>(
+    at: &[Corner<R>; NODES],
+    along: &[Corner<R>; NODES],
+) -> [Corner<Dual<R>>; NODES] {
+    let zero = Dual::constant(at[0].weight.zero_like());
+    let mut corners = [Corner { u: Vec3::splat(zero), weight: zero }; NODES];
+    for node in 0..NODES {
+        let (u, du) = (at[node].u, along[node].u);
+        corners[node] = Corner {
+            u: Vec3::new(Dual::new(u.x, du.x), Dual::new(u.y, du.y), Dual::new(u.z, du.z)),
+            weight: Dual::constant(at[node].weight),
+        };
+    }
+    corners
+}
+
+#[inline(always)]
+fn scatter_corners<T: Scalar, S: Simd, const NODES: usize>(
+    _simd: S,
+    forces: [Vec3<T::Lanes<S>>; NODES],
+    nodes: &[u32],
+    out: &mut [Vec3<T>],
+) {
+    for node in 0..NODES {
+        scatter_add::<T, S>(forces[node], &nodes[node * T::LANES..], out);
+    }
+}

@@ -1,0 +1,185 @@
+//! Non-linear tensor-mass: St Venant–Kirchhoff tissue whose forces are polynomials of the displacements, with
+//! coefficients summed over the tetrahedra on every vertex, edge, triangle and tetrahedron, once, before the run.
+//!
+//! f_p = 2 Σ_j B_pj u_j + Σ_jk [2 (C_jkp·u_j) u_k + (u_j·u_k) C_pjk] + 4 Σ_jkl D_jklp (u_j·u_k) u_l
+//!
+//! Removing a tetrahedron subtracts its tensors from the entities that it touches: 280 numbers, whatever the size of the
+//! mesh. In the adaptive form only the linear part is applied at a vertex whose displacement is below a threshold.
+//!
+//! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), sections 3, 5 and 6, with misprints corrected.
+
+mod entity;
+mod entity_loop;
+mod shape;
+mod tensors;
+
+use std::sync::Arc;
+
+use self::entity::{Edge, Tetrahedron, Triangle, Vertex};
+pub(crate) use self::entity::{LinearEdge, LinearVertex};
+pub(crate) use self::entity_loop::EntityLoop;
+pub(crate) use self::shape::RestShape;
+use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use crate::material::{LawKind, Tissue};
+use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+
+const LAWS: &[LawKind] = &[LawKind::StVenantKirchhoff, LawKind::TransverseStVenantKirchhoff];
+
+/// The non-linear tensor-mass model of St Venant–Kirchhoff tissue, with or without fibres, on tetrahedra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TensorMass {
+    tissue: Tissue,
+    threshold: Option<f64>,
+}
+
+impl TensorMass {
+    pub(crate) const INFO: ModelInfo = ModelInfo {
+        name: "tensor-mass",
+        purpose: "large displacements from tables on vertices, edges, triangles and tetrahedra; can be adaptive",
+        hexahedra: false,
+        laws: LAWS,
+    };
+
+    /// A model of `tissue`.
+    pub fn new(tissue: Tissue) -> Self {
+        Self { tissue, threshold: None }
+    }
+
+    /// Applies only the linear part of the force at vertices displaced by less than `threshold` [m, > 0].
+    ///
+    /// The forces are then neither balanced nor the gradient of an energy near the border between the two kinds.
+    pub fn adaptive(self, threshold: f64) -> Self {
+        Self { threshold: Some(threshold), ..self }
+    }
+}
+
+impl<T: Scalar> ModelRecipe<T> for TensorMass {
+    fn kind(&self) -> ModelKind {
+        ModelKind::TensorMass
+    }
+
+    fn tissue(&self) -> &Tissue {
+        &self.tissue
+    }
+
+    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+        let model = ModelKind::TensorMass;
+        let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
+        if !LAWS.contains(&self.tissue.kind()) {
+            let advice = "it is made for St Venant-Kirchhoff laws; take `linear-tensor-mass` for linear ones and \
+                          `total-lagrangian` for the rest";
+            return Err(ModelError::UnsupportedLaw { model, law: self.tissue.kind(), advice });
+        }
+        if let Some(value) = self.threshold.filter(|value| !(value.is_finite() && *value > 0.0)) {
+            return Err(ModelError::OutOfRange { name: "adaptive", value, range: "positive [m]" });
+        }
+        let shape = RestShape::new(mesh, &self.tissue)?;
+        Ok(Box::new(TensorMassModel::<T> {
+            rest: shape.rest_positions(),
+            squared_threshold: self.threshold.map(|threshold| T::from_f64(threshold * threshold)),
+            vertices: shape.assemble_vertices(),
+            edges: shape.assemble_edges(),
+            triangles: shape.assemble_triangles(),
+            tetrahedra: shape.assemble_tetrahedra(),
+            removed: vec![false; shape.cell_count()],
+            shape: Arc::new(shape),
+        }))
+    }
+}
+
+#[derive(Clone, Debug)]
+struct TensorMassModel<T: Scalar> {
+    shape: Arc<RestShape>,
+    rest: Vec<Vec3<T>>,
+    squared_threshold: Option<T>,
+    vertices: EntityLoop<T, Vertex, 1>,
+    edges: EntityLoop<T, Edge, 2>,
+    triangles: EntityLoop<T, Triangle, 3>,
+    tetrahedra: EntityLoop<T, Tetrahedron, 4>,
+    removed: Vec<bool>,
+}
+
+impl<T: Scalar> TensorMassModel<T> {
+    /// Displacements, and the weight of the non-linear part.
+    fn fill_displacements(&self, x: &[Vec3<T>], nodal: &mut [[T; 4]]) {
+        for ((slot, &x), &rest) in nodal.iter_mut().zip(x).zip(&self.rest) {
+            let u = x - rest;
+            let weight = if self.is_nonlinear_at(u) { T::ONE } else { T::ZERO };
+            *slot = [u.x, u.y, u.z, weight];
+        }
+    }
+
+    fn add_forces_at<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+        self.vertices.add_forces::<ADAPTIVE>(nodal, out);
+        self.edges.add_forces::<ADAPTIVE>(nodal, out);
+        self.triangles.add_forces::<ADAPTIVE>(nodal, out);
+        self.tetrahedra.add_forces::<ADAPTIVE>(nodal, out);
+    }
+}
+
+impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
+    fn name(&self) -> &'static str {
+        TensorMass::INFO.name
+    }
+
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.fill_displacements(x, &mut scratch.nodal);
+        match self.squared_threshold {
+            Some(_) => self.add_forces_at::<true>(&scratch.nodal, out),
+            None => self.add_forces_at::<false>(&scratch.nodal, out),
+        }
+    }
+
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.fill_displacements(x, &mut scratch.nodal);
+        for (slot, dx) in scratch.nodal_direction.iter_mut().zip(dx) {
+            *slot = [dx.x, dx.y, dx.z, T::ZERO];
+        }
+        let Scratch { nodal, nodal_direction } = scratch;
+        self.vertices.add_product(nodal, nodal_direction, out);
+        self.edges.add_product(nodal, nodal_direction, out);
+        self.triangles.add_product(nodal, nodal_direction, out);
+        self.tetrahedra.add_product(nodal, nodal_direction, out);
+    }
+
+    /// Energy of the full law, also where an adaptive model is linear.
+    fn energy(&self, x: &[Vec3<T>]) -> f64 {
+        let displacement = |node: u32| x[node as usize].cast::<f64>() - self.shape.mesh.nodes[node as usize];
+        self.vertices.energy(displacement)
+            + self.edges.energy(displacement)
+            + self.triangles.energy(displacement)
+            + self.tetrahedra.energy(displacement)
+    }
+
+    fn remove(&mut self, cells: &[u32]) {
+        for cell in cells.iter().map(|&cell| cell as usize) {
+            if std::mem::replace(&mut self.removed[cell], true) {
+                continue;
+            }
+            let tensors = self.shape.tensors(cell);
+            for (vertex, at) in self.shape.cell_vertices(cell) {
+                self.vertices.subtract(vertex, &tensors, at);
+            }
+            for (edge, at) in self.shape.cell_edges(cell) {
+                self.edges.subtract(edge, &tensors, at);
+            }
+            for (triangle, at) in self.shape.cell_triangles(cell) {
+                self.triangles.subtract(triangle, &tensors, at);
+            }
+            self.tetrahedra.subtract(cell, &tensors, [0, 1, 2, 3]);
+        }
+    }
+
+    fn is_nonlinear_at(&self, u: Vec3<T>) -> bool {
+        self.squared_threshold.is_none_or(|threshold| u.squared_norm() >= threshold)
+    }
+
+    fn bytes(&self) -> usize {
+        self.vertices.bytes() + self.edges.bytes() + self.triangles.bytes() + self.tetrahedra.bytes()
+    }
+
+    fn clone_box(&self) -> Box<dyn ForceModel<T>> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,209 @@
+//! The loop over tetrahedra that models share: gather corners into lanes, apply a kernel, scatter forces.
+
+use std::marker::PhantomData;
+
+use fearless_simd::{Simd, dispatch};
+
+use super::ModelError;
+use super::block_table::BlockTable;
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level, gather, scatter_add};
+use crate::mesh::{MeshError, TetMesh};
+
+/// The most constants that a kernel may keep for an element.
+pub(crate) const MAX_CONSTANTS: usize = 24;
+
+/// The numbers that a kernel keeps for an element.
+pub(crate) trait TetConstants: Clone + Send + Sync + 'static {
+    /// How many there are, at most [`MAX_CONSTANTS`].
+    const CONSTANTS: usize;
+
+    /// Switches an element off for good.
+    fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize);
+}
+
+/// What happens within one tetrahedron, as a function of its edge matrix D = [x1−x0, x2−x0, x3−x0].
+pub(crate) trait TetKernel: TetConstants {
+    /// Energy W(D) [J].
+    fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
+    /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
+    fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R>;
+    /// Derivative of [`TetKernel::forces`] along `dd`.
+    fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
+}
+
+/// A number that tells something about a tetrahedron, as a function of its edge matrix.
+pub(crate) trait TetMeasure: TetConstants {
+    /// The number.
+    fn measure<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
+}
+
+/// A tetrahedron at rest, in double precision: what constants are computed from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RestTet {
+    /// Which cell it is.
+    pub(crate) cell: usize,
+    /// Dm⁻¹, the inverse of the edge matrix; its rows are the gradients of the shape functions 1, 2, 3 [1/m].
+    pub(crate) inverse: Mat3<f64>,
+    /// Volume [m³], > 0.
+    pub(crate) volume: f64,
+}
+
+impl RestTet {
+    /// The tetrahedron `cell` of `mesh`.
+    ///
+    /// # Errors
+    /// [`MeshError::Degenerate`] where the volume is not positive.
+    pub(crate) fn new(mesh: &TetMesh, cell: usize) -> Result<Self, MeshError> {
+        let rest = Self::measure(mesh, cell);
+        if rest.volume > 0.0 && rest.inverse.is_finite() {
+            Ok(rest)
+        } else {
+            Err(MeshError::Degenerate { cell, corners: mesh.cells[cell].to_vec() })
+        }
+    }
+
+    /// The same for a cell that is known to have a volume.
+    pub(crate) fn measure(mesh: &TetMesh, cell: usize) -> Self {
+        let edges = mesh.edge_matrix(cell);
+        Self { cell, inverse: edges.inverse(), volume: edges.determinant() / 6.0 }
+    }
+
+    /// Gradients α_0..α_3 of the shape functions [1/m].
+    pub(crate) fn gradients(&self) -> [Vec3<f64>; 4] {
+        let [a, b, c] = self.inverse.transpose().columns;
+        [-(a + b + c), a, b, c]
+    }
+}
+
+/// Tetrahedra in batches of lanes, with the constants of the kernel `K`.
+#[derive(Clone, Debug)]
+pub(crate) struct TetLoop<T: Scalar, K> {
+    corners: BlockTable<u32>,
+    constants: BlockTable<T>,
+    kernel: PhantomData<K>,
+}
+
+impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
+    /// All tetrahedra of `mesh`, with constants made by `constants`.
+    pub(crate) fn new(mesh: &TetMesh, constants: impl Fn(&RestTet) -> Vec<f64>) -> Result<Self, ModelError> {
+        mesh.check_indices()?;
+        let cells = mesh.cells.len();
+        let mut tets = Self {
+            corners: BlockTable::new(T::LANES, cells, 4, 0),
+            constants: BlockTable::new(T::LANES, cells, K::CONSTANTS, T::ZERO),
+            kernel: PhantomData,
+        };
+        for row in 0..tets.corners.padded_rows() {
+            // Padding repeats the last cell, switched off: its deformation is as harmless as that of a real one.
+            let cell = row.min(cells - 1);
+            let rest = RestTet::new(mesh, cell)?;
+            tets.corners.set_row(row, mesh.cells[cell]);
+            tets.constants.set_row(row, constants(&rest).into_iter().map(T::from_f64));
+            if row >= cells {
+                K::deactivate(&mut tets.constants, row);
+            }
+        }
+        Ok(tets)
+    }
+
+    /// Size of the stored numbers [bytes].
+    pub(crate) fn bytes(&self) -> usize {
+        self.corners.bytes() + self.constants.bytes()
+    }
+
+    pub(crate) fn remove(&mut self, cells: &[u32]) {
+        for &cell in cells {
+            K::deactivate(&mut self.constants, cell as usize);
+        }
+    }
+}
+
+impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
+    /// The largest measure of all tetrahedra, and 0 if there is none above.
+    pub(crate) fn largest(&self, x: &[Vec3<T>]) -> T {
+        dispatch!(dispatch_level(), simd => self.largest_with(simd, x))
+    }
+
+    #[inline(always)]
+    fn largest_with<S: Simd>(&self, simd: S, x: &[Vec3<T>]) -> T {
+        let mut largest = T::Lanes::<S>::splat(simd, T::ZERO);
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            largest = largest.max(K::measure(&constants[..K::CONSTANTS], &gather_edges(simd, x, nodes)));
+        }
+        let mut lanes = [T::ZERO; MAX_LANES];
+        largest.store(&mut lanes);
+        lanes.into_iter().fold(T::ZERO, Real::max)
+    }
+}
+
+impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
+    pub(crate) fn add_forces(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_forces_with(simd, x, out));
+    }
+
+    #[inline(always)]
+    fn add_forces_with<S: Simd>(&self, simd: S, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let d = gather_edges(simd, x, nodes);
+            scatter_forces(simd, K::forces(&constants[..K::CONSTANTS], &d), nodes, out);
+        }
+    }
+
+    pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_product_with(simd, x, dx, out));
+    }
+
+    #[inline(always)]
+    fn add_product_with<S: Simd>(&self, simd: S, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
+            scatter_forces(simd, K::product(&constants[..K::CONSTANTS], &d, &dd), nodes, out);
+        }
+    }
+
+    /// Sum of the energies [J], element by element in double precision.
+    pub(crate) fn energy(&self, x: &[Vec3<T>]) -> f64 {
+        let mut constants = [0.0; MAX_CONSTANTS];
+        (0..self.corners.rows())
+            .map(|row| {
+                for (column, constant) in constants[..K::CONSTANTS].iter_mut().enumerate() {
+                    *constant = self.constants.get(row, column).to_f64();
+                }
+                let [a, b, c, d] = [0, 1, 2, 3].map(|i| x[self.corners.get(row, i) as usize].cast::<f64>());
+                K::energy(&constants[..K::CONSTANTS], &Mat3::from_columns(b - a, c - a, d - a))
+            })
+            .sum()
+    }
+}
+
+#[inline(always)]
+fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_CONSTANTS] {
+    let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
+    for column in 0..K::CONSTANTS {
+        constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+    }
+    constants
+}
+
+/// Edge matrices of a batch; `nodes` holds the four corners, corner after corner.
+#[inline(always)]
+fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[Vec3<T>], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
+    let origin = gather(simd, x, &nodes[..T::LANES]);
+    Mat3::from_columns(
+        gather(simd, x, &nodes[T::LANES..]) - origin,
+        gather(simd, x, &nodes[2 * T::LANES..]) - origin,
+        gather(simd, x, &nodes[3 * T::LANES..]) - origin,
+    )
+}
+
+#[inline(always)]
+fn scatter_forces<T: Scalar, S: Simd>(_simd: S, forces: Mat3<T::Lanes<S>>, nodes: &[u32], out: &mut [Vec3<T>]) {
+    let [f1, f2, f3] = forces.columns;
+    scatter_add::<T, S>(-(f1 + f2 + f3), &nodes[..T::LANES], out);
+    scatter_add::<T, S>(f1, &nodes[T::LANES..], out);
+    scatter_add::<T, S>(f2, &nodes[2 * T::LANES..], out);
+    scatter_add::<T, S>(f3, &nodes[3 * T::LANES..], out);
+}

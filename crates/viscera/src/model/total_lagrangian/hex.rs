@@ -1,0 +1,180 @@
+//! Hexahedra with eight corners: trilinear shape functions, Gauss points, any law.
+//!
+//! F(ξ) = Σ_a x_a ∇N_a(ξ)ᵀ,   f_a = Σ_q w_q det J_q P(F_q) ∇N_a(ξ_q), with gradients over the rest shape.
+
+use std::marker::PhantomData;
+
+use fearless_simd::{Simd, dispatch};
+
+use super::super::block_table::BlockTable;
+use super::super::{ForceModel, ModelError, Scratch};
+use super::TotalLagrangian;
+use crate::material::{Law, LawFamily, Tissue};
+use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level, gather, scatter_add};
+use crate::mesh::{GaussRule, HexMesh};
+
+/// Numbers stored for a Gauss point: eight gradients and a volume.
+const POINT: usize = 25;
+
+/// Hexahedra in batches of lanes, of the law `L`.
+#[derive(Debug)]
+pub(super) struct HexLoop<T: Scalar, L> {
+    corners: BlockTable<u32>,
+    points: BlockTable<T>,
+    parameters: BlockTable<T>,
+    point_count: usize,
+    law: PhantomData<L>,
+}
+
+impl<T: Scalar, L> Clone for HexLoop<T, L> {
+    fn clone(&self) -> Self {
+        Self {
+            corners: self.corners.clone(),
+            points: self.points.clone(),
+            parameters: self.parameters.clone(),
+            point_count: self.point_count,
+            law: PhantomData,
+        }
+    }
+}
+
+impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
+    pub(super) fn new(mesh: &HexMesh, tissue: &Tissue, rule: GaussRule) -> Result<Self, ModelError> {
+        mesh.check_indices()?;
+        let cells = mesh.cells.len();
+        let point_count = rule.point_count();
+        let mut hexes = Self {
+            corners: BlockTable::new(T::LANES, cells, 8, 0),
+            points: BlockTable::new(T::LANES, cells, point_count * POINT, T::ZERO),
+            parameters: BlockTable::new(T::LANES, cells, L::PARAMETERS.len(), T::ZERO),
+            point_count,
+            law: PhantomData,
+        };
+        for row in 0..hexes.corners.padded_rows() {
+            let cell = row.min(cells - 1);
+            hexes.corners.set_row(row, mesh.cells[cell]);
+            hexes.parameters.set_row(row, tissue.values(cell).iter().map(|&value| T::from_f64(value)));
+            let points = mesh.gauss_points(cell, rule)?;
+            let numbers = points
+                .iter()
+                .flat_map(|point| point.gradients.into_iter().flat_map(Vec3::to_array).chain([point.volume]));
+            hexes.points.set_row(row, numbers.map(T::from_f64));
+            if row >= cells {
+                hexes.deactivate(row);
+            }
+        }
+        Ok(hexes)
+    }
+
+    fn deactivate(&mut self, row: usize) {
+        for point in 0..self.point_count {
+            *self.points.get_mut(row, point * POINT + 24) = T::ZERO;
+        }
+    }
+
+    /// For every batch and Gauss point, adds V · stress · gradients to the corners; `stress` sees the law and F.
+    #[inline(always)]
+    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
+        for ((nodes, points), parameters) in blocks {
+            let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+            let mut values = [zero; 8];
+            for column in 0..L::PARAMETERS.len() {
+                values[column] = T::Lanes::<S>::load(simd, &parameters[column * T::LANES..]);
+            }
+            let law = L::at(&values[..L::PARAMETERS.len()]);
+            let mut forces = [Vec3::splat(zero); 8];
+            let place = gather_corners(simd, x, nodes);
+            let direction = if TANGENT { gather_corners(simd, dx, nodes) } else { place };
+            for point in points.chunks_exact(POINT * T::LANES) {
+                let gradients = load_gradients::<T, S>(simd, point);
+                let f = deformation(&place, &gradients);
+                let stress =
+                    if TANGENT { law.tangent(&f, &deformation(&direction, &gradients)) } else { law.stress(&f) };
+                let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+                for corner in 0..8 {
+                    forces[corner] += stress * gradients[corner];
+                }
+            }
+            for corner in 0..8 {
+                scatter_add::<T, S>(forces[corner], &nodes[corner * T::LANES..], out);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn gather_corners<T: Scalar, S: Simd>(simd: S, x: &[Vec3<T>], nodes: &[u32]) -> [Vec3<T::Lanes<S>>; 8] {
+    let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+    for corner in 0..8 {
+        corners[corner] = gather(simd, x, &nodes[corner * T::LANES..]);
+    }
+    corners
+}
+
+#[inline(always)]
+fn load_gradients<T: Scalar, S: Simd>(simd: S, point: &[T]) -> [Vec3<T::Lanes<S>>; 8] {
+    let mut gradients = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+    for corner in 0..8 {
+        for axis in 0..3 {
+            gradients[corner][axis] = T::Lanes::<S>::load(simd, &point[(3 * corner + axis) * T::LANES..]);
+        }
+    }
+    gradients
+}
+
+#[inline(always)]
+fn deformation<R: crate::math::Real>(corners: &[Vec3<R>; 8], gradients: &[Vec3<R>; 8]) -> Mat3<R> {
+    let mut f = corners[0].outer(gradients[0]);
+    for corner in 1..8 {
+        f += corners[corner].outer(gradients[corner]);
+    }
+    f
+}
+
+impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
+    fn name(&self) -> &'static str {
+        TotalLagrangian::INFO.name
+    }
+
+    fn add_forces(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, x, x, out));
+    }
+
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, x, dx, out));
+    }
+
+    fn energy(&self, x: &[Vec3<T>]) -> f64 {
+        let mut total = 0.0;
+        for row in 0..self.corners.rows() {
+            let mut values = [0.0; 8];
+            for column in 0..L::PARAMETERS.len() {
+                values[column] = self.parameters.get(row, column).to_f64();
+            }
+            let law = L::at(&values[..L::PARAMETERS.len()]);
+            let corners = std::array::from_fn(|a| x[self.corners.get(row, a) as usize].cast::<f64>());
+            for point in 0..self.point_count {
+                let number = |i: usize| self.points.get(row, point * POINT + i).to_f64();
+                let gradients: [Vec3<f64>; 8] =
+                    std::array::from_fn(|a| Vec3::new(number(3 * a), number(3 * a + 1), number(3 * a + 2)));
+                total += number(24) * law.energy(&deformation(&corners, &gradients));
+            }
+        }
+        total
+    }
+
+    fn remove(&mut self, cells: &[u32]) {
+        for &cell in cells {
+            self.deactivate(cell as usize);
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.corners.bytes() + self.points.bytes() + self.parameters.bytes()
+    }
+
+    fn clone_box(&self) -> Box<dyn ForceModel<T>> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,158 @@
+//! St Venant–Kirchhoff tetrahedra in metric form: F is never formed.
+//!
+//! With D the current edge matrix, A0 = Dm⁻¹Dm⁻ᵀ and G = DᵀD (both symmetric):
+//!
+//! tr E = ½(A0:G − 3),   [f1 f2 f3] = V D [(λ tr E − μ) A0 + μ A0 G A0]
+//!
+//! because Dm⁻¹ E Dm⁻ᵀ = ½(A0 G A0 − A0). Fibres along a0 add, with b = Dm⁻¹ a0 and s = a0·E a0 = ½(b·G b − 1):
+//!
+//! [f1 f2 f3] += 2 V κ_a s (D b) bᵀ
+
+use super::super::block_table::BlockTable;
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
+use crate::material::RestStiffness;
+use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
+
+/// Constants: A0 (xx, yy, zz, xy, xz, yz), Vλ, Vμ.
+#[derive(Clone, Debug)]
+pub(super) struct StVenantKirchhoffMetric;
+
+impl StVenantKirchhoffMetric {
+    pub(super) fn constants(rest: &RestTet, stiffness: &RestStiffness) -> Vec<f64> {
+        let metric = rest.inverse.transpose().gram();
+        vec![
+            metric.xx,
+            metric.yy,
+            metric.zz,
+            metric.xy,
+            metric.xz,
+            metric.yz,
+            rest.volume * stiffness.lame.lambda,
+            rest.volume * stiffness.lame.mu,
+        ]
+    }
+}
+
+#[inline(always)]
+fn metric<R: Real>(c: &[R]) -> Sym3<R> {
+    Sym3 { xx: c[0], yy: c[1], zz: c[2], xy: c[3], xz: c[4], yz: c[5] }
+}
+
+/// tr E = ½(A0:G − 3).
+#[inline(always)]
+fn trace_of_strain<R: Real>(a0: Sym3<R>, g: Sym3<R>) -> R {
+    (a0.contract(g) + g.xx.like(-3.0)).half()
+}
+
+/// V times (λ tr E − μ) A0 + μ A0 G A0: twice the energy's derivative with respect to G.
+#[inline(always)]
+fn contravariant_stress<R: Real>(c: &[R], g: Sym3<R>) -> Sym3<R> {
+    let a0 = metric(c);
+    a0.sandwich(g).mul_add(c[7], a0 * (c[6] * trace_of_strain(a0, g) - c[7]))
+}
+
+/// Its derivative along dG.
+#[inline(always)]
+fn contravariant_stress_along<R: Real>(c: &[R], dg: Sym3<R>) -> Sym3<R> {
+    let a0 = metric(c);
+    a0.sandwich(dg).mul_add(c[7], a0 * (c[6] * a0.contract(dg).half()))
+}
+
+/// DᵀdD + dDᵀD.
+#[inline(always)]
+fn metric_along<R: Real>(d: &Mat3<R>, dd: &Mat3<R>) -> Sym3<R> {
+    (d.transpose() * *dd).symmetric_part() * d.columns[0].x.like(2.0)
+}
+
+// tr(E²) = ¼ tr(M²) with M = A0 G − I: a product of small numbers at small strain, where tr C² − 2 tr C + 3 would cancel.
+#[inline(always)]
+fn isotropic_energy<R: Real>(c: &[R], g: Sym3<R>) -> R {
+    let a0 = metric(c);
+    let m = Mat3::from(a0) * g - Mat3::diagonal(g.xx.like(1.0));
+    (c[6] * trace_of_strain(a0, g).squared()).half() + c[7] * m.contract(m.transpose()) * g.xx.like(0.25)
+}
+
+impl TetConstants for StVenantKirchhoffMetric {
+    const CONSTANTS: usize = 8;
+
+    fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
+        *constants.get_mut(row, 6) = T::ZERO;
+        *constants.get_mut(row, 7) = T::ZERO;
+    }
+}
+
+impl TetKernel for StVenantKirchhoffMetric {
+    #[inline(always)]
+    fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
+        isotropic_energy(constants, d.gram())
+    }
+
+    #[inline(always)]
+    fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R> {
+        *d * contravariant_stress(constants, d.gram())
+    }
+
+    #[inline(always)]
+    fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
+        *dd * contravariant_stress(constants, d.gram())
+            + *d * contravariant_stress_along(constants, metric_along(d, dd))
+    }
+}
+
+/// Constants: those of [`StVenantKirchhoffMetric`], then b = Dm⁻¹a0 and 2Vκ_a.
+#[derive(Clone, Debug)]
+pub(super) struct TransverseMetric;
+
+impl TransverseMetric {
+    pub(super) fn constants(rest: &RestTet, stiffness: &RestStiffness) -> Vec<f64> {
+        let b = rest.inverse * stiffness.direction;
+        let mut constants = StVenantKirchhoffMetric::constants(rest, stiffness);
+        constants.extend([b.x, b.y, b.z, 2.0 * rest.volume * stiffness.fibre_stiffness]);
+        constants
+    }
+}
+
+#[inline(always)]
+fn fibre<R: Real>(c: &[R]) -> Vec3<R> {
+    Vec3::new(c[8], c[9], c[10])
+}
+
+/// s = ½(b·G b − 1).
+#[inline(always)]
+fn fibre_strain<R: Real>(b: Vec3<R>, g: Sym3<R>) -> R {
+    (g.quadratic(b) + b.x.like(-1.0)).half()
+}
+
+impl TetConstants for TransverseMetric {
+    const CONSTANTS: usize = 12;
+
+    fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
+        StVenantKirchhoffMetric::deactivate(constants, row);
+        *constants.get_mut(row, 11) = T::ZERO;
+    }
+}
+
+impl TetKernel for TransverseMetric {
+    #[inline(always)]
+    fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
+        let g = d.gram();
+        let s = fibre_strain(fibre(constants), g);
+        isotropic_energy(constants, g) + (constants[11] * s.squared()).half()
+    }
+
+    #[inline(always)]
+    fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R> {
+        let (g, b) = (d.gram(), fibre(constants));
+        let along_fibre = Sym3::square(b) * (constants[11] * fibre_strain(b, g));
+        *d * (contravariant_stress(constants, g) + along_fibre)
+    }
+
+    #[inline(always)]
+    fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
+        let (g, dg, b) = (d.gram(), metric_along(d, dd), fibre(constants));
+        let bb = Sym3::square(b);
+        let stress = contravariant_stress(constants, g) + bb * (constants[11] * fibre_strain(b, g));
+        let d_stress = contravariant_stress_along(constants, dg) + bb * (constants[11] * dg.quadratic(b).half());
+        *dd * stress + *d * d_stress
+    }
+}
