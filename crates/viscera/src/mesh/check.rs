@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::gauss::gauss_jacobians;
 use super::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, MeshError, MeshReport, Point, TET_EDGES, TET_FACES, TetMesh};
 use crate::math::Mat3;
 
@@ -241,31 +242,10 @@ fn tetrahedron(corners: [Point; 4]) -> Form {
 /// The cube of edge L has Jacobian (L/2)³ in ξ, η, ζ ∈ [−1, 1]. It is taken at the 2×2×2 Gauss points, where elements take
 /// it, so that a cell with one blunt corner is not refused.
 fn hexahedron(corners: [Point; 8]) -> Form {
-    const SIGNS: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
     let longest = longest_edge(&corners, &HEX_EDGES);
-    let jacobians = SIGNS.map(|signs| {
-        let point = signs.map(|sign| sign / 3.0_f64.sqrt());
-        let mut columns = [Point::ZERO; 3];
-        for (corner, at) in corners.iter().zip(SIGNS) {
-            for (axis, column) in columns.iter_mut().enumerate() {
-                let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
-                let slope = at[axis] * (1.0 + at[second] * point[second]) * (1.0 + at[third] * point[third]) / 4.0;
-                *column += *corner * (slope / longest);
-            }
-        }
-        Mat3::from_columns(columns[0], columns[1], columns[2]).determinant()
-    });
-    let volume = jacobians.iter().sum::<f64>() / 8.0 * longest.powi(3);
-    form_of(jacobians, volume, undecided(&corners, longest))
+    let jacobians = gauss_jacobians(&corners);
+    let volume = jacobians.iter().sum();
+    form_of(jacobians.map(|jacobian| 8.0 * jacobian / longest.powi(3)), volume, undecided(&corners, longest))
 }
 
 fn form_of<const POINTS: usize>(jacobians: [f64; POINTS], volume: f64, undecided: f64) -> Form {
