@@ -3,10 +3,12 @@
 //! Nodes are numbered from 0 and measured in metres. Corners follow the Gmsh/VTK order: a tetrahedron (a, b, c, d) has
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
+mod check;
 mod error;
 mod gauss;
 mod generate;
 mod isosurface_stuffing;
+mod mesh_report;
 mod quality;
 mod region;
 mod select;
@@ -21,6 +23,7 @@ mod volume_mesh;
 pub use error::MeshError;
 pub use gauss::{GaussPoint, GaussRule, hexahedron_volume};
 pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
+pub use mesh_report::MeshReport;
 pub use quality::{QualityReport, Spread, TetQuality};
 pub use region::NamedRegion;
 pub use select::{Region, RegionError};
