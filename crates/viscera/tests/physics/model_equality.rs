@@ -5,7 +5,8 @@ use viscera::math::{Mat3, Vec3};
 use viscera::mesh::{CubeCut, TetMesh, VolumeMesh};
 
 use crate::support::{
-    Evaluate, Matrix, Random, Vector, assert_close, assert_near, deformed, hex_mesh, models, plain, tet_mesh, uneven,
+    Evaluate, Matrix, Random, Vector, amplification, assert_close, assert_near, deformed, hex_mesh, models, plain,
+    tet_mesh, uneven,
 };
 
 /// The 3×3×3 rule is another quadrature, not another text of this one.
@@ -15,7 +16,9 @@ fn same_mathematics(tissue: &Tissue, mesh: &VolumeMesh, x: &[Vector], dx: &[Vect
     for named in models::<f64>(tissue, mesh).into_iter().filter(|named| !named.name.ends_with("points")) {
         assert_near(&named.model.forces(x), &forces, 1e-10, &named.name);
         assert_near(&named.model.product(x, dx), &product, 1e-10, &named.name);
-        assert_close(named.model.energy(x), energy, 1e-10, &named.name);
+        // terms of the fourth degree nearly cancel where the body turns, and leave the square of a small strain
+        let tolerance = 1e-10_f64.max(1e-12 * amplification(&named.name, mesh, x).powf(4.0 / 3.0));
+        assert_close(named.model.energy(x), energy, tolerance, &named.name);
     }
 }
 
@@ -59,7 +62,7 @@ fn fibres_may_run_another_way_in_every_cell() {
     let mut random = Random::new(72);
     let across = Lame::from_young_poisson(6e3, 0.45).unwrap();
     let mut fibre = || {
-        let along = Lame::from_young_poisson(6e3 * (1.5 + random.signed()), 0.45).unwrap();
+        let along = Lame::from_young_poisson(6e3 * (1.3 + 0.5 * random.signed()), 0.45).unwrap();
         (random.vector().to_array(), along)
     };
     let fibres: Vec<_> = (0..mesh.cell_count()).map(|_| fibre()).collect();
