@@ -6,6 +6,7 @@
 mod error;
 mod gauss;
 mod generate;
+mod groups;
 mod isosurface_stuffing;
 mod quality;
 mod region;
