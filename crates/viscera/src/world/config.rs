@@ -51,8 +51,8 @@ impl WorldConfig {
 
 impl<T: Scalar> World<T> {
     /// Refuses a fixed sub-step at which the body would blow up.
-    pub(super) fn check_substep(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
-        let stable = explicit::stable_step(body.frequency.squared_frequency(body.positions()));
+    pub(super) fn check_substep(&self, body: &mut SimulatedBody<T>) -> Result<(), WorldError> {
+        let stable = explicit::stable_step(body.squared_frequency());
         match self.config.substep {
             Substep::Fixed(substep) if substep > stable => {
                 Err(WorldError::UnstableSubstep { body: body.name().into(), substep, stable })
