@@ -115,17 +115,17 @@ fn repeated_corner<const CORNERS: usize>(mut corners: [u32; CORNERS]) -> Option<
 
 /// Cells with the corners of an earlier cell, in whatever order.
 fn repeated_cells<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) -> Vec<MeshError> {
-    let mut first_with = HashMap::with_capacity(mesh.cells.len());
-    let mut errors = Vec::new();
-    for (cell, &corners) in mesh.cells.iter().enumerate() {
+    let sorted = |(cell, &corners): (usize, &[u32; CORNERS])| {
         let mut key = corners;
         key.sort_unstable();
-        let first = *first_with.entry(key).or_insert(cell);
-        if first != cell {
-            errors.push(MeshError::DuplicateCell { cell, first });
-        }
-    }
-    errors
+        (key, cell)
+    };
+    let mut keys: Vec<_> = mesh.cells.iter().enumerate().map(sorted).collect();
+    keys.sort_unstable();
+    let alike = keys.chunk_by(|(a, _), (b, _)| a == b);
+    let mut pairs: Vec<_> = alike.flat_map(|run| run[1..].iter().map(|&(_, cell)| (cell, run[0].1))).collect();
+    pairs.sort_unstable();
+    pairs.into_iter().map(|(cell, first)| MeshError::DuplicateCell { cell, first }).collect()
 }
 
 fn remove_isolated_nodes<const CORNERS: usize, const FACE: usize>(
@@ -187,15 +187,14 @@ fn count_overshared<const CORNERS: usize, const FACE: usize>(
     mesh: &Mesh<CORNERS, FACE>,
     faces: &[[usize; FACE]],
 ) -> usize {
-    let mut uses: HashMap<[u32; FACE], u32> = HashMap::with_capacity(mesh.cells.len() * faces.len() / 2);
-    for corners in &mesh.cells {
-        for face in faces {
-            let mut key = face.map(|corner| corners[corner]);
-            key.sort_unstable();
-            *uses.entry(key).or_default() += 1;
-        }
-    }
-    uses.values().filter(|&&uses| uses > 2).count()
+    let sorted = |corners: &[u32; CORNERS], face: &[usize; FACE]| {
+        let mut key = face.map(|corner| corners[corner]);
+        key.sort_unstable();
+        key
+    };
+    let mut keys: Vec<_> = mesh.cells.iter().flat_map(|cell| faces.iter().map(|face| sorted(cell, face))).collect();
+    keys.sort_unstable();
+    keys.chunk_by(|a, b| a == b).filter(|run| run.len() > 2).count()
 }
 
 /// Finds nodes within `distance` of an earlier one. Space is cut into boxes twice as wide, so that whatever is near a node
