@@ -1,4 +1,4 @@
-//! Meshes in and results out, for [Viscera](viscera).
+//! Meshes in, results and pictures out, for [Viscera](viscera).
 //!
 //! [`read_mesh`] reads Gmsh, VTK, STL and OBJ; [`read_volume`] also insists on a volume and checks it. Every format is one
 //! module with a `parse` over bytes, which never trusts a count that it has not held against the size of the file. What is
@@ -14,6 +14,7 @@ mod error;
 pub mod gmsh;
 mod imported;
 pub mod obj;
+pub mod picture;
 mod read;
 pub mod stl;
 pub mod vtk;
