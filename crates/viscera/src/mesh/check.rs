@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::gauss::gauss_jacobians;
+use super::groups::Groups;
 use super::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, MeshError, MeshReport, Point, TET_EDGES, TET_FACES, TetMesh};
 use crate::math::Mat3;
 
@@ -164,20 +165,11 @@ fn remove_isolated_nodes<const CORNERS: usize, const FACE: usize>(
 
 /// Counts parts that share no node; every node must be in a cell.
 fn count_components<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) -> usize {
-    fn root(parents: &mut [u32], mut node: u32) -> u32 {
-        while parents[node as usize] != node {
-            parents[node as usize] = parents[parents[node as usize] as usize];
-            node = parents[node as usize];
-        }
-        node
-    }
-    let mut parents: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    let mut groups = Groups::new(mesh.nodes.len());
     let mut components = mesh.nodes.len();
     for corners in &mesh.cells {
         for &corner in &corners[1..] {
-            let (a, b) = (root(&mut parents, corners[0]), root(&mut parents, corner));
-            components -= usize::from(a != b);
-            parents[a.max(b) as usize] = a.min(b);
+            components -= usize::from(groups.join(corners[0] as usize, corner as usize));
         }
     }
     components
