@@ -1,5 +1,6 @@
 //! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
 
+mod block_sink;
 mod block_table;
 mod error;
 pub mod frequency;
@@ -10,6 +11,7 @@ mod tet_loop;
 pub mod total_lagrangian;
 pub mod volume_penalty;
 
+pub use block_sink::BlockSink;
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
 pub use registry::{ModelInfo, ModelKind};
@@ -33,8 +35,15 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// tissue exerts on them is the negative.
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 
+    /// Prepares for products at `x` [m]: a model computes here, once, what all of them share, and keeps it in `scratch`.
+    /// Products and blocks up to the next call have to be at that `x`. Most models have nothing to prepare.
+    fn linearize(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) {}
+
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>);
 
     /// Stored energy W(x) [J].
     fn energy(&self, x: &[Vec3<T>]) -> f64;

@@ -4,8 +4,9 @@ use std::marker::PhantomData;
 
 use fearless_simd::{Simd, dispatch};
 
+use super::block_sink::{add_block_column, unit_displacement};
 use super::block_table::BlockTable;
-use super::{ModelError, Scratch};
+use super::{BlockSink, ModelError, Scratch};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level};
 use crate::mesh::{MeshError, TetMesh};
 
@@ -172,6 +173,29 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
             let constants = load_constants::<T, S, K>(simd, constants);
             let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
             scatter_forces(simd, K::product(&constants[..K::CONSTANTS], &d, &dd), nodes, out);
+        }
+    }
+
+    pub(crate) fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        scratch.start(x);
+        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+    }
+
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        for (block, (nodes, constants)) in self.corners.blocks().zip(self.constants.blocks()).enumerate() {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let d = gather_edges(simd, x, nodes);
+            for corner in 0..4 {
+                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 4]; 3];
+                for axis in 0..3 {
+                    let [a, b, c, d_corner] = unit_displacement::<T, S, 4>(simd, corner, axis);
+                    let dd = Mat3::from_columns(b - a, c - a, d_corner - a);
+                    let [f1, f2, f3] = K::product(&constants[..K::CONSTANTS], &d, &dd).columns;
+                    columns[axis] = [-(f1 + f2 + f3), f1, f2, f3];
+                }
+                add_block_column::<T, S, 4>(&columns, nodes, corner, self.corners.rows() - block * T::LANES, sink);
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use self::direct::Direct;
 use self::hex::HexLoop;
 use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use super::tet_loop::{TetKernel, TetLoop};
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
@@ -124,6 +124,10 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.tets.add_product(x, dx, scratch, out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.tets.add_blocks(x, scratch, sink);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -1,0 +1,48 @@
+//! Where models put the 3×3 blocks of their tangent when it is assembled.
+
+use fearless_simd::Simd;
+
+use crate::math::{Lanes, MAX_LANES, Mat3, Scalar, Vec3};
+
+/// Takes the 3×3 blocks of a matrix that has a row and a column of blocks for every node.
+pub trait BlockSink<T> {
+    /// Adds `block` at the nodes (`row`, `column`).
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>);
+}
+
+/// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
+/// corner `corner` along `axis`. The batch holds `elements` elements, the lanes beyond are padding.
+#[inline(always)]
+pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
+    columns: &[[Vec3<T::Lanes<S>>; CORNERS]; 3],
+    nodes: &[u32],
+    corner: usize,
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    for p in 0..CORNERS {
+        let mut numbers = [[[T::ZERO; MAX_LANES]; 3]; 3];
+        for (stored, column) in numbers.iter_mut().zip(columns) {
+            for (stored, component) in stored.iter_mut().zip(column[p].to_array()) {
+                component.store(stored);
+            }
+        }
+        for lane in 0..elements.min(T::LANES) {
+            let [a, b, c] = numbers.map(|column| Vec3::from(column.map(|component| component[lane])));
+            let node = |corner: usize| nodes[corner * T::LANES + lane];
+            sink.add(node(p), node(corner), Mat3::from_columns(a, b, c));
+        }
+    }
+}
+
+/// The displacement of one corner by one metre along one axis, the others at rest.
+#[inline(always)]
+pub(crate) fn unit_displacement<T: Scalar, S: Simd, const CORNERS: usize>(
+    simd: S,
+    corner: usize,
+    axis: usize,
+) -> [Vec3<T::Lanes<S>>; CORNERS] {
+    let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); CORNERS];
+    corners[corner][axis] = T::Lanes::<S>::splat(simd, T::ONE);
+    corners
+}
