@@ -3,6 +3,7 @@
 //! A scene is read ([`Scene::load`]), changed by overrides ([`Scene::set`]), checked against the schema that [`mod@file`] gives
 //! ([`Scene::check`]), and built. What is wrong is shown in its line ([`SceneError`]).
 
+mod build;
 mod check;
 mod document;
 mod error;
@@ -12,6 +13,7 @@ mod scene;
 mod schema;
 pub mod unit;
 
+pub use build::BuiltScene;
 pub use error::{Place, SceneError, SceneErrors};
 pub use scene::Scene;
 pub use schema::{schema, schema_text};

@@ -32,7 +32,7 @@ pub struct BodyFile {
     /// What becomes of pieces that are cut off: "free" (the default) lets them fall, "drop" takes them away.
     #[serde(default)]
     pub loose_pieces: LoosePiecesFile,
-    /// Parts of another law; later ones win where they overlap.
+    /// Parts of another law or density; later ones win where they overlap.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub part: Vec<PartFile>,
     /// What is moved along a given way.
@@ -83,15 +83,20 @@ pub enum LoosePiecesFile {
     Drop,
 }
 
-/// A part of a body with a law of its own.
+/// A part of a body with a law or density of its own.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(title = "part")]
 pub struct PartFile {
     /// Which cells.
     pub region: RegionFile,
-    /// Their law, of the same kind as the body's.
-    pub law: LawFile,
+    /// Their law, of the same kind as the body's; it may have fibres of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<LawFile>,
+    /// Their mass density [kg/m³].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub density: Option<Density>,
 }
 
 /// A region that is moved along a given way.

@@ -52,14 +52,14 @@ pub enum LawName {
     extend("x-exactly-one-of" = [["direction"], ["along"], ["file"]], "x-exactly-one-of-2" = [["young"], ["factor"], ["lambda", "mu"]])
 )]
 pub struct FibreFile {
-    /// The same direction everywhere; any length.
+    /// The same direction everywhere, in the coordinates of the scene; any length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// Points of a curve [m], in the coordinates of the scene: each cell takes the direction of the nearest stretch of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 2))]
     pub along: Option<Vec<[Length; 3]>>,
-    /// CSV file, from the scene file's folder: one row x, y, z for each cell of the mesh.
+    /// CSV file, from the scene file's folder: one row x, y, z for each cell of the mesh, turned with the mesh's place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// Young's modulus along the fibres [Pa], with the law's Poisson ratio.

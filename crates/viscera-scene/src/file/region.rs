@@ -44,7 +44,8 @@ pub enum RegionShape {
         point: [Length; 3],
         /// Direction at a right angle to it; any length.
         normal: [f64; 3],
-        /// Nodes up to half of it on either side belong to the region [m]; by default a thousandth of the body's size.
+        /// Nodes up to half of it on either side belong to the region [m]; by default a millionth of the
+        /// body's size.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("exclusiveMinimum" = 0))]
         thickness: Option<Length>,
