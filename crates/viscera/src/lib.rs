@@ -4,7 +4,13 @@
 //! Ayache 2000/2001) and the physically realistic interactive models (Nesme et al. 2005). All quantities are SI
 //! (m, kg, s, N, Pa) unless an item says otherwise. The crate touches no file, socket, clock or global thread.
 
+pub mod body;
+pub mod curve;
+mod cutting;
+pub mod dynamics;
+pub mod instrument;
 pub mod material;
 pub mod math;
 pub mod mesh;
 pub mod model;
+pub mod world;

@@ -58,6 +58,17 @@ impl<R: Real> Law<R> for LinearElastic<R> {
     fn tangent(&self, _f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
         self.hooke(df.symmetric_part()).into()
     }
+
+    #[inline(always)]
+    fn stiffness_bound(&self, _f: &Mat3<R>) -> R {
+        isotropic_bound(self.lambda, self.mu)
+    }
+}
+
+/// Largest eigenvalue of Hooke's law: 3λ + 2μ for a change of volume, 2μ for a change of shape.
+#[inline(always)]
+pub(super) fn isotropic_bound<R: Real>(lambda: R, mu: R) -> R {
+    (lambda * lambda.like(3.0)).max(lambda.zero_like()) + mu.double()
 }
 
 impl LawFamily for LinearElastic {

@@ -33,6 +33,8 @@ pub trait Law<R: Real>: Copy {
     fn stress(&self, f: &Mat3<R>) -> Mat3<R>;
     /// Directional derivative ∂P/∂F : dF [Pa].
     fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R>;
+    /// Upper bound of dF : ∂P/∂F : dF over all |dF| = 1 [Pa]: how stiff the tissue is at `F`, for the stable time step.
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R;
 }
 
 /// A law as a family over all kinds of numbers, with what the engine needs to know about it.

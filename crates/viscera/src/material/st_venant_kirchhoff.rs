@@ -7,6 +7,7 @@
 //! Range: moderate strain. Softens in compression (confined: unstable below a stretch of 1/√3) and cannot tell F from
 //! its mirror image, so an inverted element stays inverted.
 
+use super::linear::isotropic_bound;
 use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness, StrainMeasure, green_strain};
 use crate::math::{Mat3, Real, Sym3};
 
@@ -59,6 +60,14 @@ impl<R: Real> Law<R> for StVenantKirchhoff<R> {
     fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
         let d_strain = (f.transpose() * *df).symmetric_part();
         *df * self.second_stress(green_strain(f)) + *f * self.second_stress(d_strain)
+    }
+
+    // dF:dP = S:(dFᵀdF) + dE:C:dE with |dE| ≤ ‖F‖ |dF|
+    #[inline(always)]
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R {
+        let stress = self.second_stress(green_strain(f)).largest_eigenvalue_bound();
+        let stretch = f.gram().largest_eigenvalue_bound();
+        stretch.mul_add(isotropic_bound(self.lambda, self.mu), stress.max(stress.zero_like()))
     }
 }
 

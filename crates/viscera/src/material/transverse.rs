@@ -62,6 +62,12 @@ impl<R: Real> Fibre<R> {
         Sym3::square(self.direction) * (self.stiffness * self.stretch_strain(strain)).double()
     }
 
+    /// 2κ_a, where it stiffens.
+    #[inline(always)]
+    fn stiffness_bound(&self) -> R {
+        self.stiffness.double().max(self.stiffness.zero_like())
+    }
+
     #[inline(always)]
     fn at(values: &[R]) -> Self {
         Self { direction: Vec3::new(values[0], values[1], values[2]), stiffness: values[3] }
@@ -101,6 +107,11 @@ impl<R: Real> Law<R> for TransverseLinear<R> {
     fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
         self.matrix.tangent(f, df) + self.fibre.stress(df.symmetric_part()).into()
     }
+
+    #[inline(always)]
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R {
+        self.matrix.stiffness_bound(f) + self.fibre.stiffness_bound()
+    }
 }
 
 /// St Venant–Kirchhoff elasticity with one family of fibres.
@@ -127,6 +138,14 @@ impl<R: Real> Law<R> for TransverseStVenantKirchhoff<R> {
     fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
         let d_strain = (f.transpose() * *df).symmetric_part();
         self.matrix.tangent(f, df) + *df * self.fibre.stress(green_strain(f)) + *f * self.fibre.stress(d_strain)
+    }
+
+    #[inline(always)]
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R {
+        let stress = self.fibre.stress(green_strain(f)).largest_eigenvalue_bound();
+        let stretch = f.gram().largest_eigenvalue_bound();
+        let fibre = stretch.mul_add(self.fibre.stiffness_bound(), stress.max(stress.zero_like()));
+        self.matrix.stiffness_bound(f) + fibre
     }
 }
 

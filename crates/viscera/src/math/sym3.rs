@@ -54,6 +54,13 @@ impl<R: Real> Sym3<R> {
     pub fn quadratic(self, v: Vec3<R>) -> R {
         v.dot(self * v)
     }
+    /// Upper bound of the largest eigenvalue: mean + √(⅔) ‖deviator‖, exact where the two smaller ones are equal.
+    #[inline(always)]
+    pub fn largest_eigenvalue_bound(self) -> R {
+        let mean = self.trace() * self.xx.like(1.0 / 3.0);
+        let deviator = self - Self::diagonal(mean);
+        mean + (deviator.squared_norm() * mean.like(2.0 / 3.0)).sqrt()
+    }
     /// A B A for symmetric A and B: symmetric again.
     #[inline(always)]
     pub fn sandwich(self, middle: Self) -> Self {

@@ -4,15 +4,19 @@
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
 mod error;
+mod gauss;
 pub mod generate;
 mod region;
+mod select;
 mod surface_mesh;
 mod topology;
 mod volume_mesh;
 
 pub use error::MeshError;
+pub use gauss::{GaussPoint, GaussRule, hexahedron_volume};
 pub use generate::{CubeCut, GenerateError, TubeDivisions};
 pub use region::NamedRegion;
+pub use select::{Region, RegionError};
 pub use surface_mesh::SurfaceMesh;
 pub use topology::{Face, TetTopology, cells_of_nodes};
 pub use volume_mesh::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, TET_EDGES, TET_FACES, TetMesh, VolumeMesh};

@@ -106,21 +106,31 @@ impl TetMesh {
 }
 
 impl HexMesh {
-    /// Corners of the surface quadrilaterals, counter-clockwise seen from outside.
-    pub fn surface_quads(&self) -> Vec<[u32; 4]> {
-        let mut faces: HashMap<[u32; 4], (usize, [u32; 4], usize)> = HashMap::with_capacity(self.cells.len() * 4);
-        for corners in &self.cells {
+    /// Every face once, in the order in which the cells meet them: corners, counter-clockwise seen from outside the first
+    /// cell, and the cells on its two sides.
+    pub fn faces(&self) -> Vec<([u32; 4], (u32, Option<u32>))> {
+        let mut faces: Vec<([u32; 4], (u32, Option<u32>))> = Vec::new();
+        let mut face_of: HashMap<[u32; 4], usize> = HashMap::with_capacity(self.cells.len() * 4);
+        for (cell, corners) in self.cells.iter().enumerate() {
             for local in super::HEX_FACES {
                 let nodes = local.map(|i| corners[i]);
                 let mut key = nodes;
                 key.sort_unstable();
-                let order = faces.len();
-                faces.entry(key).or_insert((order, nodes, 0)).2 += 1;
+                match face_of.get(&key) {
+                    Some(&face) => faces[face].1.1 = Some(cell as u32),
+                    None => {
+                        face_of.insert(key, faces.len());
+                        faces.push((nodes, (cell as u32, None)));
+                    }
+                }
             }
         }
-        let mut once: Vec<_> = faces.into_values().filter(|&(_, _, uses)| uses == 1).collect();
-        once.sort_unstable();
-        once.into_iter().map(|(_, nodes, _)| nodes).collect()
+        faces
+    }
+
+    /// Corners of the surface quadrilaterals, counter-clockwise seen from outside.
+    pub fn surface_quads(&self) -> Vec<[u32; 4]> {
+        self.faces().into_iter().filter(|(_, cells)| cells.1.is_none()).map(|(quad, _)| quad).collect()
     }
 
     /// The outward surface, each quadrilateral cut into two triangles; nodes keep their numbers.

@@ -137,6 +137,14 @@ impl VolumeMesh {
         }
     }
 
+    /// Smallest and largest coordinates [m].
+    pub fn bounds(&self) -> (Point, Point) {
+        match self {
+            Self::Tet(mesh) => mesh.bounds(),
+            Self::Hex(mesh) => mesh.bounds(),
+        }
+    }
+
     /// Length of the diagonal of the bounding box [m].
     pub fn size(&self) -> f64 {
         match self {

@@ -2,6 +2,7 @@
 
 mod block_table;
 mod error;
+pub mod frequency;
 pub mod linear_tensor_mass;
 mod registry;
 pub mod tensor_mass;

@@ -6,25 +6,35 @@ use fearless_simd::{Simd, dispatch};
 
 use super::ModelError;
 use super::block_table::BlockTable;
-use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, dispatch_level, gather, scatter_add};
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level, gather, scatter_add};
 use crate::mesh::{MeshError, TetMesh};
 
 /// The most constants that a kernel may keep for an element.
 pub(crate) const MAX_CONSTANTS: usize = 24;
 
-/// What happens within one tetrahedron, as a function of its edge matrix D = [x1−x0, x2−x0, x3−x0].
-pub(crate) trait TetKernel: Clone + Send + Sync + 'static {
-    /// How many numbers the kernel keeps for an element, at most [`MAX_CONSTANTS`].
+/// The numbers that a kernel keeps for an element.
+pub(crate) trait TetConstants: Clone + Send + Sync + 'static {
+    /// How many there are, at most [`MAX_CONSTANTS`].
     const CONSTANTS: usize;
 
-    /// Makes an element without force, energy and stiffness out of a row of constants.
+    /// Switches an element off for good.
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize);
+}
+
+/// What happens within one tetrahedron, as a function of its edge matrix D = [x1−x0, x2−x0, x3−x0].
+pub(crate) trait TetKernel: TetConstants {
     /// Energy W(D) [J].
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R>;
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
+}
+
+/// A number that tells something about a tetrahedron, as a function of its edge matrix.
+pub(crate) trait TetMeasure: TetConstants {
+    /// The number.
+    fn measure<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
 }
 
 /// A tetrahedron at rest, in double precision: what constants are computed from.
@@ -73,7 +83,7 @@ pub(crate) struct TetLoop<T: Scalar, K> {
     kernel: PhantomData<K>,
 }
 
-impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
+impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
     /// All tetrahedra of `mesh`, with constants made by `constants`.
     pub(crate) fn new(mesh: &TetMesh, constants: impl Fn(&RestTet) -> Vec<f64>) -> Result<Self, ModelError> {
         mesh.check_indices()?;
@@ -106,7 +116,28 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
             K::deactivate(&mut self.constants, cell as usize);
         }
     }
+}
 
+impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
+    /// The largest measure of all tetrahedra, and 0 if there is none above.
+    pub(crate) fn largest(&self, x: &[Vec3<T>]) -> T {
+        dispatch!(dispatch_level(), simd => self.largest_with(simd, x))
+    }
+
+    #[inline(always)]
+    fn largest_with<S: Simd>(&self, simd: S, x: &[Vec3<T>]) -> T {
+        let mut largest = T::Lanes::<S>::splat(simd, T::ZERO);
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            largest = largest.max(K::measure(&constants[..K::CONSTANTS], &gather_edges(simd, x, nodes)));
+        }
+        let mut lanes = [T::ZERO; MAX_LANES];
+        largest.store(&mut lanes);
+        lanes.into_iter().fold(T::ZERO, Real::max)
+    }
+}
+
+impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(crate) fn add_forces(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
         dispatch!(dispatch_level(), simd => self.add_forces_with(simd, x, out));
     }
@@ -149,7 +180,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 }
 
 #[inline(always)]
-fn load_constants<T: Scalar, S: Simd, K: TetKernel>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_CONSTANTS] {
+fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_CONSTANTS] {
     let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
     for column in 0..K::CONSTANTS {
         constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);

@@ -9,7 +9,7 @@
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), section 4, made the gradient of an energy.
 
 use super::block_table::BlockTable;
-use super::tet_loop::{TetKernel, TetLoop};
+use super::tet_loop::{TetConstants, TetKernel, TetLoop};
 use super::{ForceModel, ModelError, Scratch};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 use crate::mesh::TetMesh;
@@ -47,13 +47,15 @@ impl VolumeKernel {
     }
 }
 
-impl TetKernel for VolumeKernel {
+impl TetConstants for VolumeKernel {
     const CONSTANTS: usize = 2;
 
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
         *constants.get_mut(row, 0) = T::ZERO;
     }
+}
 
+impl TetKernel for VolumeKernel {
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         let (delta, _) = Self::relative_change(constants, d);

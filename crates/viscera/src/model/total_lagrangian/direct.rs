@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::super::block_table::BlockTable;
-use super::super::tet_loop::{RestTet, TetKernel};
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
 use crate::material::{Law, LawFamily};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 
@@ -30,13 +30,15 @@ fn inverse<R: Real>(constants: &[R]) -> Mat3<R> {
     Mat3::from_columns(column(0), column(1), column(2))
 }
 
-impl<L: LawFamily> TetKernel for Direct<L> {
+impl<L: LawFamily> TetConstants for Direct<L> {
     const CONSTANTS: usize = 10 + L::PARAMETERS.len();
 
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
         *constants.get_mut(row, 9) = T::ZERO;
     }
+}
 
+impl<L: LawFamily> TetKernel for Direct<L> {
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         constants[9] * L::at(&constants[10..]).energy(&(*d * inverse(constants)))

@@ -11,87 +11,7 @@ use super::super::{ForceModel, ModelError, Scratch};
 use super::TotalLagrangian;
 use crate::material::{Law, LawFamily, Tissue};
 use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level, gather, scatter_add};
-use crate::mesh::{HexMesh, MeshError};
-
-/// Gauss points in each direction of a hexahedron.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GaussRule {
-    /// 2×2×2 points: full integration of a linear element, the usual choice.
-    #[default]
-    Two,
-    /// 3×3×3 points, for comparison: on a distorted cell no rule is exact.
-    Three,
-}
-
-impl GaussRule {
-    /// Places ξ in [−1, 1] and weights of the rule in one direction.
-    fn line(self) -> &'static [(f64, f64)] {
-        const ROOT_OF_THIRD: f64 = 0.577_350_269_189_625_8;
-        const ROOT_OF_THREE_FIFTHS: f64 = 0.774_596_669_241_483_4;
-        match self {
-            Self::Two => &[(-ROOT_OF_THIRD, 1.0), (ROOT_OF_THIRD, 1.0)],
-            Self::Three => &[(-ROOT_OF_THREE_FIFTHS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (ROOT_OF_THREE_FIFTHS, 5.0 / 9.0)],
-        }
-    }
-
-    /// Places and weights in the cube.
-    fn points(self) -> Vec<([f64; 3], f64)> {
-        let line = self.line();
-        let mut points = Vec::with_capacity(line.len().pow(3));
-        for &(z, wz) in line {
-            for &(y, wy) in line {
-                for &(x, wx) in line {
-                    points.push(([x, y, z], wx * wy * wz));
-                }
-            }
-        }
-        points
-    }
-}
-
-/// Corners of the reference cube [−1, 1]³, in Gmsh/VTK order.
-const REFERENCE_CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
-
-/// A Gauss point of a cell at rest.
-pub(crate) struct RestPoint {
-    /// Gradients of the eight shape functions [1/m].
-    pub(crate) gradients: [Vec3<f64>; 8],
-    /// Volume that the point stands for [m³], > 0.
-    pub(crate) volume: f64,
-}
-
-/// The Gauss points of a cell.
-///
-/// # Errors
-/// [`MeshError::Degenerate`] where the cell is folded: a point with no positive volume.
-pub(crate) fn rest_points(mesh: &HexMesh, cell: usize, rule: GaussRule) -> Result<Vec<RestPoint>, MeshError> {
-    let corners = mesh.corners(cell);
-    let point = |(place, weight): ([f64; 3], f64)| {
-        let local = REFERENCE_CORNERS.map(|corner| {
-            let [a, b, c] = [0, 1, 2].map(|axis| 1.0 + corner[axis] * place[axis]);
-            Vec3::new(corner[0] * b * c, a * corner[1] * c, a * b * corner[2]) * 0.125
-        });
-        let jacobian = (0..8).fold(Mat3::ZERO, |sum, a| sum + corners[a].outer(local[a]));
-        let determinant = jacobian.determinant();
-        let inverse = jacobian.inverse();
-        let gradients = local.map(|gradient| inverse.transpose_mul(gradient));
-        if determinant > 0.0 && inverse.is_finite() {
-            Ok(RestPoint { gradients, volume: determinant * weight })
-        } else {
-            Err(MeshError::Degenerate { cell, corners: mesh.cells[cell].to_vec() })
-        }
-    };
-    rule.points().into_iter().map(point).collect()
-}
+use crate::mesh::{GaussRule, HexMesh};
 
 /// Numbers stored for a Gauss point: eight gradients and a volume.
 const POINT: usize = 25;
@@ -122,7 +42,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
     pub(super) fn new(mesh: &HexMesh, tissue: &Tissue, rule: GaussRule) -> Result<Self, ModelError> {
         mesh.check_indices()?;
         let cells = mesh.cells.len();
-        let point_count = rule.points().len();
+        let point_count = rule.point_count();
         let mut hexes = Self {
             corners: BlockTable::new(T::LANES, cells, 8, 0),
             points: BlockTable::new(T::LANES, cells, point_count * POINT, T::ZERO),
@@ -134,7 +54,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
             let cell = row.min(cells - 1);
             hexes.corners.set_row(row, mesh.cells[cell]);
             hexes.parameters.set_row(row, tissue.values(cell).iter().map(|&value| T::from_f64(value)));
-            let points = rest_points(mesh, cell, rule)?;
+            let points = mesh.gauss_points(cell, rule)?;
             let numbers = points
                 .iter()
                 .flat_map(|point| point.gradients.into_iter().flat_map(Vec3::to_array).chain([point.volume]));

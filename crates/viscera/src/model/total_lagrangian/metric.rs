@@ -9,7 +9,7 @@
 //! [f1 f2 f3] += 2 V κ_a s (D b) bᵀ
 
 use super::super::block_table::BlockTable;
-use super::super::tet_loop::{RestTet, TetKernel};
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
 use crate::material::RestStiffness;
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
@@ -72,14 +72,16 @@ fn isotropic_energy<R: Real>(c: &[R], g: Sym3<R>) -> R {
     (c[6] * trace_of_strain(a0, g).squared()).half() + c[7] * m.contract(m.transpose()) * g.xx.like(0.25)
 }
 
-impl TetKernel for StVenantKirchhoffMetric {
+impl TetConstants for StVenantKirchhoffMetric {
     const CONSTANTS: usize = 8;
 
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
         *constants.get_mut(row, 6) = T::ZERO;
         *constants.get_mut(row, 7) = T::ZERO;
     }
+}
 
+impl TetKernel for StVenantKirchhoffMetric {
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         isotropic_energy(constants, d.gram())
@@ -121,14 +123,16 @@ fn fibre_strain<R: Real>(b: Vec3<R>, g: Sym3<R>) -> R {
     (g.quadratic(b) + b.x.like(-1.0)).half()
 }
 
-impl TetKernel for TransverseMetric {
+impl TetConstants for TransverseMetric {
     const CONSTANTS: usize = 12;
 
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
         StVenantKirchhoffMetric::deactivate(constants, row);
         *constants.get_mut(row, 11) = T::ZERO;
     }
+}
 
+impl TetKernel for TransverseMetric {
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         let g = d.gram();

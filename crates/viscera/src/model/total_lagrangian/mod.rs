@@ -14,9 +14,7 @@ use super::tet_loop::{TetKernel, TetLoop};
 use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Scalar, Vec3};
-use crate::mesh::{TetMesh, VolumeMesh};
-
-pub use self::hex::GaussRule;
+use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
 
 /// The direct model of any law, on tetrahedra or hexahedra.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,128 @@
+use crate::curve::Curve;
+use crate::math::{Scalar, Vec3};
+use crate::mesh::{Region, RegionError, VolumeMesh};
+
+/// What pulls or presses on a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Load {
+    /// A force on a region, shared equally by its nodes.
+    Force {
+        /// The nodes.
+        region: Region,
+        /// Sum over the region [N], along time [s].
+        total: Curve<Vec3<f64>>,
+    },
+    /// A pressure on a part of the surface: it acts along the current inward normal and follows the deformation.
+    Pressure {
+        /// The faces.
+        region: Region,
+        /// Pressure [Pa], positive inwards, along time [s].
+        pressure: Curve<f64>,
+    },
+    /// A force per rest area on a part of the surface, of constant direction (a dead load).
+    Traction {
+        /// The faces.
+        region: Region,
+        /// Traction [Pa], along time [s].
+        traction: Curve<Vec3<f64>>,
+    },
+}
+
+/// Loads with their regions resolved, ready to be added up.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NodalLoads<T> {
+    loads: Vec<NodalLoad<T>>,
+}
+
+#[derive(Clone, Debug)]
+enum NodalLoad<T> {
+    /// Shares of each node; they add up to 1 (force) or to the rest area (traction).
+    Shares {
+        shares: Vec<(u32, T)>,
+        curve: Curve<Vec3<f64>>,
+        faces: Vec<FaceShare>,
+    },
+    Pressure {
+        faces: Vec<([u32; 3], u32)>,
+        pressure: Curve<f64>,
+    },
+}
+
+/// A face of a traction: when the cell behind it is cut away, its share is gone.
+#[derive(Clone, Copy, Debug)]
+struct FaceShare {
+    nodes: [u32; 3],
+    cell: u32,
+    area: f64,
+}
+
+impl<T: Scalar> NodalLoads<T> {
+    pub(crate) fn new(loads: &[Load], mesh: &VolumeMesh) -> Result<Self, (&'static str, RegionError)> {
+        let loads = loads.iter().map(|load| NodalLoad::new(load, mesh)).collect::<Result<_, _>>()?;
+        Ok(Self { loads })
+    }
+
+    /// Adds the loads at `time` [s] on nodes at `x` to `out`. Faces whose cell is removed carry nothing, and nodes that
+    /// are retired are the integrator's business.
+    pub(crate) fn add(&self, time: f64, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {
+        for load in &self.loads {
+            load.add(time, x, removed, out);
+        }
+    }
+}
+
+impl<T: Scalar> NodalLoad<T> {
+    fn new(load: &Load, mesh: &VolumeMesh) -> Result<Self, (&'static str, RegionError)> {
+        match load {
+            Load::Force { region, total } => {
+                let nodes = region.nodes(mesh).map_err(|error| ("a force", error))?;
+                let share = T::from_f64(1.0 / nodes.len() as f64);
+                let shares = nodes.into_iter().map(|node| (node, share)).collect();
+                Ok(Self::Shares { shares, curve: total.clone(), faces: Vec::new() })
+            }
+            Load::Traction { region, traction } => {
+                let triangles = region.surface_triangles(mesh).map_err(|error| ("a traction", error))?;
+                let area = |[a, b, c]: [u32; 3]| {
+                    let [a, b, c] = [a, b, c].map(|node| mesh.nodes()[node as usize]);
+                    0.5 * (b - a).cross(c - a).norm()
+                };
+                let faces =
+                    triangles.into_iter().map(|(nodes, cell)| FaceShare { nodes, cell, area: area(nodes) }).collect();
+                Ok(Self::Shares { shares: Vec::new(), curve: traction.clone(), faces })
+            }
+            Load::Pressure { region, pressure } => {
+                let faces = region.surface_triangles(mesh).map_err(|error| ("a pressure", error))?;
+                Ok(Self::Pressure { faces, pressure: pressure.clone() })
+            }
+        }
+    }
+
+    fn add(&self, time: f64, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {
+        match self {
+            Self::Shares { shares, curve, faces } => {
+                let value = curve.at(time);
+                let force: Vec3<T> = value.cast();
+                for &(node, share) in shares {
+                    out[node as usize] += force * share;
+                }
+                for face in faces.iter().filter(|face| !removed[face.cell as usize]) {
+                    let third: Vec3<T> = (value * (face.area / 3.0)).cast();
+                    for node in face.nodes {
+                        out[node as usize] += third;
+                    }
+                }
+            }
+            // −p n A/3 on each corner, with n A = ½ (b − a)×(c − a) the current outward area vector
+            Self::Pressure { faces, pressure } => {
+                let sixth = T::from_f64(pressure.at(time) / 6.0);
+                for &(nodes, _) in faces.iter().filter(|&&(_, cell)| !removed[cell as usize]) {
+                    let [a, b, c] = nodes.map(|node| x[node as usize]);
+                    let force = (b - a).cross(c - a) * -sixth;
+                    for node in nodes {
+                        out[node as usize] += force;
+                    }
+                }
+            }
+        }
+    }
+}

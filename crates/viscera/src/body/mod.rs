@@ -1,0 +1,143 @@
+//! Bodies: what a user describes ([`Body`]), and what a world simulates ([`SimulatedBody`]).
+
+mod error;
+mod load;
+mod simulated;
+mod state;
+
+pub use error::BodyError;
+pub use load::Load;
+pub(crate) use load::NodalLoads;
+pub use simulated::{SimulatedBody, SurfaceTriangle};
+pub(crate) use state::MotionBackup;
+pub use state::{BodyState, NodeMotion};
+
+use crate::curve::Curve;
+use crate::math::{Scalar, Vec3};
+use crate::mesh::{Region, VolumeMesh};
+use crate::model::ModelRecipe;
+
+/// A body to be added to a world: a mesh, its tissue, and what holds and pulls it.
+///
+/// ```
+/// use viscera::body::Body;
+/// use viscera::material::{StVenantKirchhoff, Tissue};
+/// use viscera::mesh::{Region, TetMesh};
+/// use viscera::model::TensorMass;
+/// use viscera::world::{World, WorldConfig};
+///
+/// let mesh = TetMesh::box_grid([2, 2, 8], [0.1, 0.1, 0.4]); // m
+/// let tissue = Tissue::uniform(StVenantKirchhoff::from_young_poisson(10e3, 0.45)?); // Pa
+/// let mut world = World::<f64>::new(WorldConfig::default())?;
+/// let bar = world.add(
+///     Body::new(mesh, 1000.0 /* kg/m³ */)
+///         .model(TensorMass::new(tissue))
+///         .fix(Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0)),
+/// )?;
+/// world.step()?;
+/// assert!(world.body(bar).max_displacement() > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Body<T: Scalar> {
+    pub(crate) name: String,
+    pub(crate) mesh: VolumeMesh,
+    /// Density [kg/m³]: one number, or one for each cell.
+    pub(crate) density: Vec<f64>,
+    pub(crate) model: Option<Box<dyn ModelRecipe<T>>>,
+    pub(crate) keep_volume: f64,
+    pub(crate) damping: f64,
+    pub(crate) fixed: Vec<Region>,
+    pub(crate) prescribed: Vec<(Region, Curve<Vec3<f64>>)>,
+    pub(crate) loads: Vec<Load>,
+    pub(crate) loose_pieces: LoosePieces,
+}
+
+/// What becomes of a piece that a cut has separated from everything that holds it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LoosePieces {
+    /// It goes on as a free body.
+    #[default]
+    Free,
+    /// Its cells are removed.
+    Drop,
+}
+
+impl<T: Scalar> Body<T> {
+    /// A body of `density` [kg/m³, > 0], undamped, unloaded and held by nothing.
+    pub fn new(mesh: impl Into<VolumeMesh>, density: f64) -> Self {
+        Self {
+            name: "body".into(),
+            mesh: mesh.into(),
+            density: vec![density],
+            model: None,
+            keep_volume: 0.0,
+            damping: 0.0,
+            fixed: Vec::new(),
+            prescribed: Vec::new(),
+            loads: Vec::new(),
+            loose_pieces: LoosePieces::default(),
+        }
+    }
+
+    /// The name by which messages call it.
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// One density for each cell [kg/m³, > 0].
+    pub fn densities(mut self, densities: Vec<f64>) -> Self {
+        self.density = densities;
+        self
+    }
+
+    /// The force model. There is no default: a body without one is refused.
+    pub fn model(mut self, recipe: impl ModelRecipe<T> + 'static) -> Self {
+        self.model = Some(Box::new(recipe));
+        self
+    }
+
+    /// The force model, chosen while the program runs.
+    pub fn boxed_model(mut self, recipe: Box<dyn ModelRecipe<T>>) -> Self {
+        self.model = Some(recipe);
+        self
+    }
+
+    /// Stiffness of the volume-keeping force on each tetrahedron [Pa, ≥ 0]; 0, the default, is none.
+    pub fn keep_volume(mut self, kappa: f64) -> Self {
+        self.keep_volume = kappa;
+        self
+    }
+
+    /// Damping rate [1/s, ≥ 0]: γ_i = rate · m_i; 0, the default, is none.
+    pub fn damping(mut self, rate: f64) -> Self {
+        self.damping = rate;
+        self
+    }
+
+    /// Holds the nodes of a region where they are.
+    pub fn fix(mut self, region: Region) -> Self {
+        self.fixed.push(region);
+        self
+    }
+
+    /// Moves the nodes of a region: their displacement from rest [m] along time [s]. Where regions overlap, the last
+    /// one counts; fixed regions count before prescribed ones.
+    pub fn prescribe(mut self, region: Region, displacement: Curve<Vec3<f64>>) -> Self {
+        self.prescribed.push((region, displacement));
+        self
+    }
+
+    /// Pulls or presses on a region.
+    pub fn load(mut self, load: Load) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// What becomes of pieces that a cut separates.
+    pub fn loose_pieces(mut self, choice: LoosePieces) -> Self {
+        self.loose_pieces = choice;
+        self
+    }
+}

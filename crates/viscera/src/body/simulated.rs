@@ -1,0 +1,307 @@
+use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion};
+use crate::curve::Curve;
+use crate::math::{Scalar, Vec3};
+use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
+use crate::model::frequency::{FrequencyBound, frequency_bound};
+use crate::model::{ModelKind, Scratch, VolumePenalty};
+
+/// A body in a world: what never changes about it, its state, and memory to compute in.
+pub struct SimulatedBody<T: Scalar> {
+    /// Name by which messages call it.
+    pub(crate) name: String,
+    /// Rest shape.
+    pub(crate) mesh: VolumeMesh,
+    /// Mass of a corner of each cell [kg].
+    pub(crate) corner_masses: Vec<f64>,
+    /// Rest volumes of the cells [m³].
+    pub(crate) cell_volumes: Vec<f64>,
+    pub(crate) model: ModelKind,
+    pub(crate) law: &'static str,
+    /// Damping rate γ_i/m_i [1/s].
+    pub(crate) damping: T,
+    pub(crate) rest: Vec<Vec3<T>>,
+    pub(crate) prescribed: Vec<Curve<Vec3<f64>>>,
+    pub(crate) loads: NodalLoads<T>,
+    pub(crate) loose_pieces: LoosePieces,
+    /// Cells at each node: those of node n are `cells_at_nodes.1[starts[n]..starts[n + 1]]`.
+    pub(crate) cells_at_nodes: (Vec<u32>, Vec<u32>),
+    pub(crate) boundary: Boundary,
+    pub(crate) state: BodyState<T>,
+    pub(crate) frequency: Box<dyn FrequencyBound<T>>,
+    pub(crate) external_forces: Vec<Vec3<T>>,
+    pub(crate) scratch: Scratch<T>,
+    pub(crate) backup: MotionBackup<T>,
+    pub(crate) pieces: Vec<u32>,
+}
+
+/// The faces that are, or may become, surface: triangles, and the cells on their two sides.
+#[derive(Clone, Debug)]
+pub(crate) struct Boundary {
+    faces: Vec<Face>,
+}
+
+/// A triangle of the current surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SurfaceTriangle {
+    /// Corners, counter-clockwise seen from outside.
+    pub nodes: [u32; 3],
+    /// Whether a cut has laid it open.
+    pub cut: bool,
+}
+
+impl<T: Scalar> SimulatedBody<T> {
+    pub(crate) fn new(body: Body<T>) -> Result<Self, BodyError> {
+        let Body { name, mesh, density, model, keep_volume, damping, fixed, prescribed, loads, loose_pieces } = body;
+        let body = || name.clone();
+        check_range(&name, "damping", damping, damping >= 0.0, "zero or positive [1/s]")?;
+        check_density(&name, &density, mesh.cell_count())?;
+        let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
+        let model_error = |source| BodyError::Model { body: body(), source };
+        let mut models = vec![recipe.build(&mesh).map_err(model_error)?];
+        if keep_volume != 0.0 {
+            let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
+            models.push(Box::new(VolumePenalty::new(tets, keep_volume).map_err(model_error)?));
+        }
+        let frequency = frequency_bound(&mesh, recipe.tissue(), &density, keep_volume).map_err(model_error)?;
+
+        let region_error = |purpose| move |source| BodyError::Region { body: body(), purpose, source };
+        let mut motions = vec![NodeMotion::Free; mesh.nodes().len()];
+        let mut curves = Vec::new();
+        for (number, (region, curve)) in prescribed.into_iter().enumerate() {
+            mark(&mut motions, &region, &mesh, NodeMotion::Prescribed(number as u32))
+                .map_err(region_error("a prescribed motion"))?;
+            curves.push(curve);
+        }
+        for region in &fixed {
+            mark(&mut motions, region, &mesh, NodeMotion::Fixed).map_err(region_error("a fixed region"))?;
+        }
+        let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| BodyError::Region {
+            body: name.clone(),
+            purpose,
+            source,
+        })?;
+
+        let cell_volumes = cell_volumes(&mesh);
+        let density_of = |cell: usize| density[if density.len() == 1 { 0 } else { cell }];
+        let corners = mesh.cell(0).len() as f64;
+        let corner_masses: Vec<f64> =
+            cell_volumes.iter().enumerate().map(|(cell, volume)| density_of(cell) * volume / corners).collect();
+        let cells_at_nodes = match &mesh {
+            VolumeMesh::Tet(mesh) => cells_of_nodes(mesh),
+            VolumeMesh::Hex(mesh) => cells_of_nodes(mesh),
+        };
+        let state = initial_state(&name, &mesh, &corner_masses, motions, models)?;
+        Ok(Self {
+            model: recipe.kind(),
+            law: recipe.tissue().kind().name(),
+            damping: T::from_f64(damping),
+            rest: state.positions.clone(),
+            prescribed: curves,
+            external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
+            scratch: Scratch::new(mesh.nodes().len()),
+            backup: MotionBackup::new(&state),
+            pieces: vec![0; 2 * mesh.nodes().len()],
+            boundary: Boundary::new(&mesh),
+            name,
+            mesh,
+            corner_masses,
+            cell_volumes,
+            loads,
+            loose_pieces,
+            cells_at_nodes,
+            state,
+            frequency,
+        })
+    }
+
+    /// Name by which messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The rest shape.
+    pub fn mesh(&self) -> &VolumeMesh {
+        &self.mesh
+    }
+
+    /// The force model.
+    pub fn model(&self) -> ModelKind {
+        self.model
+    }
+
+    /// Name of the law.
+    pub fn law(&self) -> &'static str {
+        self.law
+    }
+
+    /// The state: positions, velocities, forces, what is cut away.
+    pub fn state(&self) -> &BodyState<T> {
+        &self.state
+    }
+
+    /// Positions of the nodes [m].
+    pub fn positions(&self) -> &[Vec3<T>] {
+        &self.state.positions
+    }
+
+    /// Velocities of the nodes [m/s].
+    pub fn velocities(&self) -> &[Vec3<T>] {
+        &self.state.velocities
+    }
+
+    /// Sets the velocities of the free nodes [m/s], for a body that starts in motion.
+    pub fn set_velocities(&mut self, velocity: impl Fn(Vec3<f64>) -> Vec3<f64>) {
+        for (node, motion) in self.state.motions.iter().enumerate() {
+            if *motion == NodeMotion::Free {
+                self.state.velocities[node] = velocity(self.state.positions[node].cast()).cast();
+            }
+        }
+    }
+
+    /// Sets the positions of the free nodes [m], for a body that starts deformed.
+    pub fn set_positions(&mut self, position: impl Fn(Vec3<f64>) -> Vec3<f64>) {
+        for (node, motion) in self.state.motions.iter().enumerate() {
+            if *motion == NodeMotion::Free {
+                self.state.positions[node] = position(self.state.positions[node].cast()).cast();
+            }
+        }
+        self.state.positions_changed();
+    }
+
+    /// Cells that are not removed.
+    pub fn cell_count(&self) -> usize {
+        self.mesh.cell_count() - self.state.removed_count
+    }
+
+    /// The current surface, cut faces included.
+    pub fn surface(&self) -> Vec<SurfaceTriangle> {
+        self.boundary.surface(&self.state.removed)
+    }
+
+    /// Brings the internal forces up to date with positions and cells.
+    pub(crate) fn update_internal_forces(&mut self) {
+        let state = &mut self.state;
+        if std::mem::replace(&mut state.forces_are_current, true) {
+            return;
+        }
+        state.internal_forces.fill(Vec3::ZERO);
+        for model in &state.models {
+            model.add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
+        }
+    }
+
+    /// Bound of ω_max² at the current positions [1/s²].
+    pub(crate) fn squared_frequency(&mut self) -> f64 {
+        *self.state.squared_frequency.get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions))
+    }
+
+    /// Gravity and loads at `time` on the current positions [N].
+    pub(crate) fn update_external_forces(&mut self, time: f64, gravity: Vec3<T>) {
+        for (force, &mass) in self.external_forces.iter_mut().zip(&self.state.masses) {
+            *force = gravity * mass;
+        }
+        self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
+    }
+}
+
+fn check_range(body: &str, name: &'static str, value: f64, good: bool, range: &'static str) -> Result<(), BodyError> {
+    if good && value.is_finite() {
+        Ok(())
+    } else {
+        Err(BodyError::OutOfRange { body: body.into(), name, value, range })
+    }
+}
+
+fn check_density(body: &str, density: &[f64], cells: usize) -> Result<(), BodyError> {
+    for &value in density {
+        check_range(body, "density", value, value > 0.0, "positive [kg/m³]")?;
+    }
+    if density.len() == 1 || density.len() == cells {
+        Ok(())
+    } else {
+        Err(BodyError::WrongDensityCount { body: body.into(), given: density.len(), cells })
+    }
+}
+
+fn mark(
+    motions: &mut [NodeMotion],
+    region: &Region,
+    mesh: &VolumeMesh,
+    motion: NodeMotion,
+) -> Result<(), crate::mesh::RegionError> {
+    for node in region.nodes(mesh)? {
+        motions[node as usize] = motion;
+    }
+    Ok(())
+}
+
+/// Rest volumes [m³].
+fn cell_volumes(mesh: &VolumeMesh) -> Vec<f64> {
+    match mesh {
+        VolumeMesh::Tet(mesh) => (0..mesh.cells.len()).map(|cell| mesh.cell_volume(cell)).collect(),
+        VolumeMesh::Hex(mesh) => (0..mesh.cells.len()).map(|cell| mesh.cell_volume(cell)).collect(),
+    }
+}
+
+fn initial_state<T: Scalar>(
+    body: &str,
+    mesh: &VolumeMesh,
+    corner_masses: &[f64],
+    motions: Vec<NodeMotion>,
+    models: Vec<Box<dyn crate::model::ForceModel<T>>>,
+) -> Result<BodyState<T>, BodyError> {
+    let nodes = mesh.nodes().len();
+    let (mut masses, mut cells_at_node) = (vec![0.0; nodes], vec![0; nodes]);
+    for (cell, &mass) in corner_masses.iter().enumerate() {
+        for &node in mesh.cell(cell) {
+            masses[node as usize] += mass;
+            cells_at_node[node as usize] += 1;
+        }
+    }
+    if let Some(node) = cells_at_node.iter().position(|&count| count == 0) {
+        return Err(BodyError::IsolatedNode { body: body.into(), node });
+    }
+    Ok(BodyState {
+        positions: mesh.nodes().iter().map(|node| node.cast()).collect(),
+        velocities: vec![Vec3::ZERO; nodes],
+        internal_forces: vec![Vec3::ZERO; nodes],
+        motions,
+        grips: vec![Vec3::ZERO; nodes],
+        masses: masses.into_iter().map(T::from_f64).collect(),
+        removed: vec![false; mesh.cell_count()],
+        removed_count: 0,
+        cells_at_node,
+        models,
+        forces_are_current: false,
+        squared_frequency: None,
+    })
+}
+
+impl Boundary {
+    fn new(mesh: &VolumeMesh) -> Self {
+        let faces = match mesh {
+            VolumeMesh::Tet(mesh) => TetTopology::new(mesh).faces,
+            VolumeMesh::Hex(mesh) => {
+                let halves =
+                    |([a, b, c, d], cells): ([u32; 4], _)| [[a, b, c], [a, c, d]].map(|nodes| Face { nodes, cells });
+                mesh.faces().into_iter().flat_map(halves).collect()
+            }
+        };
+        Self { faces }
+    }
+
+    fn surface(&self, removed: &[bool]) -> Vec<SurfaceTriangle> {
+        let there = |cell: u32| !removed[cell as usize];
+        let triangle = |face: &Face| {
+            let [a, b, c] = face.nodes;
+            let (first, second) = face.cells;
+            match (there(first), second.map(there)) {
+                (true, None) => Some(SurfaceTriangle { nodes: [a, b, c], cut: false }),
+                (true, Some(false)) => Some(SurfaceTriangle { nodes: [a, b, c], cut: true }),
+                (false, Some(true)) => Some(SurfaceTriangle { nodes: [a, c, b], cut: true }),
+                _ => None,
+            }
+        };
+        self.faces.iter().filter_map(triangle).collect()
+    }
+}

@@ -1,0 +1,122 @@
+use crate::math::{Scalar, Vec3};
+use crate::model::ForceModel;
+
+/// How a node moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeMotion {
+    /// By the forces on it.
+    Free,
+    /// Not at all.
+    Fixed,
+    /// Along the body's prescribed motion of this number.
+    Prescribed(u32),
+    /// With the tip of the world's instrument of this number.
+    Held(u32),
+    /// No longer: every cell around it was removed.
+    Retired,
+}
+
+/// Everything about a body that changes with time; a copy of it is a snapshot of the body.
+pub struct BodyState<T: Scalar> {
+    /// Positions [m].
+    pub positions: Vec<Vec3<T>>,
+    /// Velocities [m/s].
+    pub velocities: Vec<Vec3<T>>,
+    /// Internal forces +∂W/∂x at the positions [N].
+    pub internal_forces: Vec<Vec3<T>>,
+    /// How each node moves.
+    pub motions: Vec<NodeMotion>,
+    /// Of held nodes: their place relative to the tip of the instrument [m].
+    pub grips: Vec<Vec3<T>>,
+    /// Lumped masses [kg].
+    pub masses: Vec<T>,
+    /// Which cells are removed.
+    pub removed: Vec<bool>,
+    /// How many cells are removed.
+    pub removed_count: usize,
+    /// How many cells still meet at each node.
+    pub cells_at_node: Vec<u32>,
+    /// Force models, the body's own first, then the volume penalty where there is one.
+    pub models: Vec<Box<dyn ForceModel<T>>>,
+    /// Whether the internal forces belong to the positions and the cells that are left.
+    pub forces_are_current: bool,
+    /// Bound of ω_max² at the positions [1/s²], where it is known.
+    pub squared_frequency: Option<f64>,
+}
+
+impl<T: Scalar> Clone for BodyState<T> {
+    fn clone(&self) -> Self {
+        Self {
+            positions: self.positions.clone(),
+            velocities: self.velocities.clone(),
+            internal_forces: self.internal_forces.clone(),
+            motions: self.motions.clone(),
+            grips: self.grips.clone(),
+            masses: self.masses.clone(),
+            removed: self.removed.clone(),
+            removed_count: self.removed_count,
+            cells_at_node: self.cells_at_node.clone(),
+            models: self.models.iter().map(|model| model.clone_box()).collect(),
+            forces_are_current: self.forces_are_current,
+            squared_frequency: self.squared_frequency,
+        }
+    }
+}
+
+impl<T: Scalar> BodyState<T> {
+    /// Says that the positions were changed: forces and frequency have to be found anew.
+    pub(crate) fn positions_changed(&mut self) {
+        self.forces_are_current = false;
+        self.squared_frequency = None;
+    }
+
+    /// Whether every position and velocity is a finite number.
+    pub fn is_finite(&self) -> bool {
+        // A sum is finite if and only if its terms are, but for overflow, which is as bad: one test for many numbers.
+        let sum = |vectors: &[Vec3<T>]| vectors.iter().fold(T::ZERO, |sum, v| sum + (v.x + v.y + v.z));
+        sum(&self.positions).is_finite() && sum(&self.velocities).is_finite()
+    }
+}
+
+/// The part of the state that a step without a cut changes: what is needed to undo the step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MotionBackup<T> {
+    positions: Vec<Vec3<T>>,
+    velocities: Vec<Vec3<T>>,
+    internal_forces: Vec<Vec3<T>>,
+    motions: Vec<NodeMotion>,
+    grips: Vec<Vec3<T>>,
+    forces_are_current: bool,
+    squared_frequency: Option<f64>,
+}
+
+impl<T: Scalar> MotionBackup<T> {
+    /// A first backup, which brings its memory with it.
+    pub(crate) fn new(state: &BodyState<T>) -> Self {
+        let mut backup = Self::default();
+        backup.keep(state);
+        backup
+    }
+
+    /// Copies the motion of `state`.
+    pub(crate) fn keep(&mut self, state: &BodyState<T>) {
+        self.positions.clone_from(&state.positions);
+        self.velocities.clone_from(&state.velocities);
+        self.internal_forces.clone_from(&state.internal_forces);
+        self.motions.clone_from(&state.motions);
+        self.grips.clone_from(&state.grips);
+        self.forces_are_current = state.forces_are_current;
+        self.squared_frequency = state.squared_frequency;
+    }
+
+    /// Puts the copy back.
+    pub(crate) fn put_back(&self, state: &mut BodyState<T>) {
+        state.positions.clone_from(&self.positions);
+        state.velocities.clone_from(&self.velocities);
+        state.internal_forces.clone_from(&self.internal_forces);
+        state.motions.clone_from(&self.motions);
+        state.grips.clone_from(&self.grips);
+        state.forces_are_current = self.forces_are_current;
+        state.squared_frequency = self.squared_frequency;
+    }
+}

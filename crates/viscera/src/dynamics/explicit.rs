@@ -1,0 +1,87 @@
+//! The papers' explicit scheme: central differences with lumped masses.
+//!
+//! (m/Δt² + γ/2Δt) x⁺ = (R − F) + 2m/Δt² x − (m/Δt² − γ/2Δt) x⁻,   stable iff Δt < 2/ω_max for any γ ≥ 0
+//!
+//! With v = (x⁺ − x⁻)/2Δt it reads, per node and without a past position,
+//!
+//! v_½ = v + Δt/2 (R − F − γv)/m,   x⁺ = x + Δt v_½,   v⁺ = [v_½ + Δt/2 (R⁺ − F⁺)/m] / (1 + γΔt/2m)
+//!
+//! which starts by itself, lets Δt change from step to step, and is symplectic for γ = 0.
+//!
+//! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
+
+use crate::body::{NodeMotion, SimulatedBody};
+use crate::math::{Scalar, Vec3};
+
+/// Share of the stability limit 2/ω_max that automatic sub-steps use: room for the tissue to stiffen within a step.
+const SAFETY: f64 = 0.9;
+
+/// Longest stable time step [s] for a bound of ω_max² [1/s²]; infinite where nothing vibrates.
+pub fn stable_step(squared_frequency: f64) -> f64 {
+    2.0 / squared_frequency.sqrt()
+}
+
+/// Sub-steps of equal length that divide `step` [s] with a margin to the stability limit; at least 1.
+pub fn substeps_for(step: f64, squared_frequency: f64) -> f64 {
+    (step / (SAFETY * stable_step(squared_frequency))).ceil().max(1.0)
+}
+
+/// What drives the nodes that forces do not move, over one sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<'a, T> {
+    /// Time at the end of the sub-step [s].
+    pub end: f64,
+    /// Tips of the instruments at that time [m].
+    pub tips: &'a [Vec3<f64>],
+    /// Gravity [m/s²].
+    pub gravity: Vec3<T>,
+}
+
+/// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
+pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
+    kick_and_drift(body, dt, drive);
+    body.state.positions_changed();
+    body.update_internal_forces();
+    body.update_external_forces(drive.end, drive.gravity);
+    kick(body, dt);
+}
+
+/// First half: v_½ and x⁺, and driven nodes to where they must be.
+fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
+    let (step, half) = (T::from_f64(dt), T::from_f64(0.5 * dt));
+    let state = &mut body.state;
+    for node in 0..state.positions.len() {
+        let target = match state.motions[node] {
+            NodeMotion::Free => {
+                let force = body.external_forces[node] - state.internal_forces[node];
+                let acceleration = force / state.masses[node] - state.velocities[node] * body.damping;
+                let velocity = acceleration.mul_add(half, state.velocities[node]);
+                state.velocities[node] = velocity;
+                state.positions[node] = velocity.mul_add(step, state.positions[node]);
+                continue;
+            }
+            NodeMotion::Fixed | NodeMotion::Retired => {
+                state.velocities[node] = Vec3::ZERO;
+                continue;
+            }
+            NodeMotion::Prescribed(curve) => body.rest[node] + body.prescribed[curve as usize].at(drive.end).cast(),
+            NodeMotion::Held(instrument) => state.grips[node] + drive.tips[instrument as usize].cast(),
+        };
+        state.velocities[node] = (target - state.positions[node]) / step;
+        state.positions[node] = target;
+    }
+}
+
+/// Second half: v⁺ from the forces at x⁺.
+fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
+    let half = T::from_f64(0.5 * dt);
+    let damped = T::ONE / (T::ONE + half * body.damping);
+    let state = &mut body.state;
+    for node in 0..state.positions.len() {
+        if state.motions[node] == NodeMotion::Free {
+            let force = body.external_forces[node] - state.internal_forces[node];
+            let velocity = force.mul_add(half / state.masses[node], state.velocities[node]);
+            state.velocities[node] = velocity * damped;
+        }
+    }
+}

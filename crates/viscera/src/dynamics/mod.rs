@@ -1,0 +1,3 @@
+//! How bodies move in time.
+
+pub mod explicit;

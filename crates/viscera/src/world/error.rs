@@ -1,0 +1,105 @@
+use crate::body::BodyError;
+use crate::instrument::InstrumentError;
+
+/// Why a world cannot be set up so.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// A setting is out of range.
+    #[error("{name} = {value} is out of range: it must be {range}")]
+    OutOfRange {
+        /// Name of the setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What would do.
+        range: &'static str,
+    },
+    /// The fixed sub-step is too long for a body.
+    #[error(
+        "body `{body}` blows up at sub-steps of {substep:.3e} s: the longest stable one is {stable:.3e} s; take that, coarser cells, softer tissue, or automatic sub-steps"
+    )]
+    UnstableSubstep {
+        /// Name of the body.
+        body: String,
+        /// What was asked for [s].
+        substep: f64,
+        /// What would do [s].
+        stable: f64,
+    },
+    /// A cell that the body does not have.
+    #[error("body `{body}` has no cell {cell}: its cells are numbered 0 to {}", cells - 1)]
+    MissingCell {
+        /// Name of the body.
+        body: String,
+        /// The number.
+        cell: u32,
+        /// How many cells there are.
+        cells: usize,
+    },
+    /// The snapshot is of a world with other bodies or instruments.
+    #[error("the snapshot belongs to a world with other bodies or instruments; restore it there")]
+    ForeignSnapshot,
+    /// The body makes no sense.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// The instrument makes no sense.
+    #[error("instrument {0}")]
+    Instrument(#[from] InstrumentError),
+}
+
+/// Why a step was not made. The world is as it was before.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Numbers left the range of the precision: loads too strong for the tissue, or cells turned inside out.
+    #[error(
+        "at {time:.4} s body `{body}` ({law}) leaves every bound near cell {cell}: its stretch before the step is {stretch:.3}; the step is undone. {advice}"
+    )]
+    Diverged {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Name of the law.
+        law: &'static str,
+        /// The most deformed cell before the step.
+        cell: usize,
+        /// Largest length of one of its edges over that at rest.
+        stretch: f64,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The tissue is so deformed, and so stiff, that a step would need too many sub-steps.
+    #[error(
+        "at {time:.4} s body `{body}` ({law}) would need {substeps:.0} sub-steps in one step of {step} s, because cell {cell} is stretched {stretch:.3} times; the step is undone. Pull it less, or take a softer law"
+    )]
+    TooStiff {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Name of the law.
+        law: &'static str,
+        /// The most deformed cell.
+        cell: usize,
+        /// Largest length of one of its edges over that at rest.
+        stretch: f64,
+        /// How many it would need.
+        substeps: f64,
+        /// Length of the step [s].
+        step: f64,
+    },
+    /// The fixed sub-step has stopped being stable.
+    #[error(
+        "at {time:.4} s sub-steps of {substep:.3e} s are no longer stable for body `{body}`, which has stiffened: {stable:.3e} s would do; the step is undone. Take that, or automatic sub-steps"
+    )]
+    UnstableSubstep {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// What was asked for [s].
+        substep: f64,
+        /// What would do [s].
+        stable: f64,
+    },
+}

@@ -1,0 +1,134 @@
+//! The world: bodies, instruments, a clock.
+
+mod config;
+mod error;
+mod observables;
+mod snapshot;
+mod step;
+
+pub use config::{Substep, WorldConfig};
+pub use error::{StepError, WorldError};
+pub use observables::{BodyObservables, InstrumentObservables};
+pub use snapshot::Snapshot;
+pub use step::StepReport;
+
+use crate::body::{Body, SimulatedBody};
+use crate::instrument::Instrument;
+use crate::math::{Scalar, Vec3};
+
+/// Number of a body in its world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId(pub usize);
+
+/// Number of an instrument in its world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct InstrumentId(pub usize);
+
+/// Bodies and instruments that move together in time, in single (`World<f32>`) or double (`World<f64>`) precision.
+pub struct World<T: Scalar> {
+    config: WorldConfig,
+    bodies: Vec<SimulatedBody<T>>,
+    instruments: Vec<Box<dyn Instrument<T>>>,
+    /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
+    steps: u64,
+    /// Tips of the instruments [m].
+    tips: Vec<Vec3<f64>>,
+    /// Memory for the cells that an instrument removes.
+    removable: Vec<u32>,
+}
+
+impl<T: Scalar> World<T> {
+    /// An empty world.
+    ///
+    /// # Errors
+    /// [`WorldError::OutOfRange`] for a step that is not positive, or gravity that is not finite.
+    pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
+        config.check()?;
+        Ok(Self {
+            config,
+            bodies: Vec::new(),
+            instruments: Vec::new(),
+            steps: 0,
+            tips: Vec::new(),
+            removable: Vec::new(),
+        })
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
+    /// at the fixed sub-step that was asked for, with the number that would do.
+    pub fn add(&mut self, body: Body<T>) -> Result<BodyId, WorldError> {
+        let body = SimulatedBody::new(body)?;
+        self.check_substep(&body)?;
+        let cells = body.mesh().cell_count();
+        self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
+        self.bodies.push(body);
+        Ok(BodyId(self.bodies.len() - 1))
+    }
+
+    /// Adds an instrument.
+    ///
+    /// # Errors
+    /// [`WorldError::Instrument`] where its settings make no sense.
+    pub fn add_instrument(&mut self, instrument: impl Instrument<T> + 'static) -> Result<InstrumentId, WorldError> {
+        instrument.check()?;
+        self.tips.push(instrument.path().at(self.time()));
+        self.instruments.push(Box::new(instrument));
+        Ok(InstrumentId(self.instruments.len() - 1))
+    }
+
+    /// Settings of the world.
+    pub fn config(&self) -> &WorldConfig {
+        &self.config
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.config.step
+    }
+
+    /// Numbers of all bodies.
+    pub fn body_ids(&self) -> impl Iterator<Item = BodyId> + use<T> {
+        (0..self.bodies.len()).map(BodyId)
+    }
+
+    /// Numbers of all instruments.
+    pub fn instrument_ids(&self) -> impl Iterator<Item = InstrumentId> + use<T> {
+        (0..self.instruments.len()).map(InstrumentId)
+    }
+
+    /// A body of this world. Panics for a number of another world.
+    pub fn body(&self, id: BodyId) -> &SimulatedBody<T> {
+        &self.bodies[id.0]
+    }
+
+    /// A body of this world, to be changed. Panics for a number of another world.
+    pub fn body_mut(&mut self, id: BodyId) -> &mut SimulatedBody<T> {
+        &mut self.bodies[id.0]
+    }
+
+    /// An instrument of this world. Panics for a number of another world.
+    pub fn instrument(&self, id: InstrumentId) -> &dyn Instrument<T> {
+        self.instruments[id.0].as_ref()
+    }
+
+    /// Removes cells of a body now, between two steps; cells that are gone already are passed over. Gives how many went,
+    /// pieces that came loose and were dropped included.
+    ///
+    /// # Errors
+    /// [`WorldError::MissingCell`] for a number that the body does not have; nothing is removed then.
+    pub fn remove_cells(&mut self, id: BodyId, cells: &[u32]) -> Result<usize, WorldError> {
+        let body = &mut self.bodies[id.0];
+        let count = body.mesh().cell_count();
+        if let Some(&cell) = cells.iter().find(|&&cell| cell as usize >= count) {
+            return Err(WorldError::MissingCell { body: body.name().into(), cell, cells: count });
+        }
+        let before = body.state().removed_count;
+        self.removable.clear();
+        self.removable.extend_from_slice(cells);
+        body.remove_cells(&mut self.removable);
+        Ok(body.state().removed_count - before)
+    }
+}

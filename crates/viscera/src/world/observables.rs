@@ -1,0 +1,160 @@
+use super::{BodyId, InstrumentId, World};
+use crate::body::{NodeMotion, SimulatedBody};
+use crate::instrument::holding_force;
+use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+
+/// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
+const REST_RATIO: f64 = 1e-8;
+
+/// Numbers about a body, in double precision whatever the world computes in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyObservables {
+    /// ½ Σ m v² [J].
+    pub kinetic_energy: f64,
+    /// Energy stored in the tissue [J].
+    pub elastic_energy: f64,
+    /// −Σ m g·x [J].
+    pub gravity_energy: f64,
+    /// Σ m v [kg m/s].
+    pub momentum: Vec3<f64>,
+    /// Σ m x×v about the origin [kg m²/s].
+    pub angular_momentum: Vec3<f64>,
+    /// Sum of the internal forces [N]: zero but for rounding, if the model keeps Newton's third law.
+    pub net_internal_force: Vec3<f64>,
+    /// Mass of what is left [kg].
+    pub mass: f64,
+    /// Volume of what is left [m³].
+    pub volume: f64,
+    /// (V − V0)/V0 of what is left.
+    pub volume_variation: f64,
+    /// Largest distance of a node from its place at rest [m].
+    pub max_displacement: f64,
+    /// Force by which fixed and prescribed nodes are held [N].
+    pub reaction: Vec3<f64>,
+    /// Cells removed.
+    pub removed_cells: usize,
+    /// Cells whose volume is negative.
+    pub inverted_cells: usize,
+    /// Nodes at which the full law acts; all of them, unless the model is linear or adaptive.
+    pub nonlinear_nodes: usize,
+    /// Whether the kinetic energy has died down to a hundred-millionth of the elastic energy.
+    pub at_rest: bool,
+}
+
+/// Numbers about an instrument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InstrumentObservables {
+    /// Where its tip is [m].
+    pub tip: Vec3<f64>,
+    /// Whether it is at work: jaws closed, current on.
+    pub active: bool,
+    /// Nodes that it holds.
+    pub held_nodes: usize,
+    /// Force by which it holds them [N], apart from the inertia of the held nodes themselves.
+    pub force: Vec3<f64>,
+}
+
+impl<T: Scalar> World<T> {
+    /// Measures a body now. Panics for a number of another world.
+    pub fn observe(&mut self, id: BodyId) -> BodyObservables {
+        self.bring_forces_up_to_date();
+        let gravity = Vec3::from(self.config.gravity);
+        self.bodies[id.0].observe(gravity)
+    }
+
+    /// Measures an instrument now. Panics for a number of another world.
+    pub fn observe_instrument(&mut self, id: InstrumentId) -> InstrumentObservables {
+        self.bring_forces_up_to_date();
+        let motion = NodeMotion::Held(id.0 as u32);
+        let held = |body: &SimulatedBody<T>| body.state.motions.iter().filter(|&&own| own == motion).count();
+        InstrumentObservables {
+            tip: self.tips[id.0],
+            active: self.instruments[id.0].is_active(self.time()),
+            held_nodes: self.bodies.iter().map(held).sum(),
+            force: self.bodies.iter().fold(Vec3::ZERO, |sum, body| sum + holding_force(body, motion)),
+        }
+    }
+
+    fn bring_forces_up_to_date(&mut self) {
+        let (time, gravity) = (self.time(), Vec3::from(self.config.gravity).cast());
+        for body in &mut self.bodies {
+            body.update_internal_forces();
+            body.update_external_forces(time, gravity);
+        }
+    }
+}
+
+impl<T: Scalar> SimulatedBody<T> {
+    /// Largest distance of a node that still belongs to a cell from its place at rest [m].
+    pub fn max_displacement(&self) -> f64 {
+        let state = &self.state;
+        (0..state.positions.len())
+            .filter(|&node| state.motions[node] != NodeMotion::Retired)
+            .map(|node| (state.positions[node] - self.rest[node]).squared_norm().to_f64())
+            .fold(0.0, f64::max)
+            .sqrt()
+    }
+
+    /// Current volumes of the cells that are left, with their volumes at rest [m³].
+    fn volumes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
+        let volume = move |cell: usize| match &self.mesh {
+            VolumeMesh::Tet(mesh) => {
+                let [a, b, c, d] = mesh.cells[cell].map(place);
+                (b - a).dot((c - a).cross(d - a)) / 6.0
+            }
+            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
+        };
+        let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
+        left.map(move |cell| (volume(cell), self.cell_volumes[cell]))
+    }
+
+    fn observe(&self, gravity: Vec3<f64>) -> BodyObservables {
+        let state = &self.state;
+        let (mut kinetic, mut gravity_energy, mut mass) = (0.0, 0.0, 0.0);
+        let (mut momentum, mut angular_momentum) = (Vec3::ZERO, Vec3::ZERO);
+        let (mut reaction, mut net_internal_force) = (Vec3::ZERO, Vec3::ZERO);
+        let mut nonlinear_nodes = 0;
+        for node in 0..state.positions.len() {
+            let (m, x, v) = (state.masses[node].to_f64(), state.positions[node].cast(), state.velocities[node].cast());
+            kinetic += 0.5 * m * v.squared_norm();
+            gravity_energy -= m * gravity.dot(x);
+            mass += m;
+            momentum += v * m;
+            angular_momentum += x.cross(v) * m;
+            net_internal_force += state.internal_forces[node].cast();
+            if matches!(state.motions[node], NodeMotion::Fixed | NodeMotion::Prescribed(_)) {
+                reaction += (state.internal_forces[node] - self.external_forces[node]).cast();
+            }
+            let alive = state.motions[node] != NodeMotion::Retired;
+            if alive && state.models[0].is_nonlinear_at(state.positions[node] - self.rest[node]) {
+                nonlinear_nodes += 1;
+            }
+        }
+        let elastic = state.models.iter().map(|model| model.energy(&state.positions)).sum::<f64>();
+        let (mut volume, mut rest_volume, mut inverted_cells) = (0.0, 0.0, 0);
+        for (now, rest) in self.volumes() {
+            volume += now;
+            rest_volume += rest;
+            inverted_cells += usize::from(now < 0.0);
+        }
+        BodyObservables {
+            kinetic_energy: kinetic,
+            elastic_energy: elastic,
+            gravity_energy,
+            momentum,
+            angular_momentum,
+            net_internal_force,
+            mass,
+            volume,
+            volume_variation: if rest_volume > 0.0 { volume / rest_volume - 1.0 } else { 0.0 },
+            max_displacement: self.max_displacement(),
+            reaction,
+            removed_cells: state.removed_count,
+            inverted_cells,
+            nonlinear_nodes,
+            at_rest: kinetic <= REST_RATIO * elastic,
+        }
+    }
+}

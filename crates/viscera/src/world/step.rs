@@ -1,0 +1,178 @@
+//! One step of a world.
+
+use super::{StepError, Substep, World};
+use crate::body::SimulatedBody;
+use crate::dynamics::explicit::{self, Drive};
+use crate::instrument::Span;
+use crate::math::{Scalar, Vec3};
+
+/// The most sub-steps of one step.
+const MAX_SUBSTEPS: f64 = 1e5;
+/// How many times a step is tried again with more sub-steps.
+const MAX_RETRIES: u32 = 5;
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Time at the end [s].
+    pub time: f64,
+    /// Sub-steps taken.
+    pub substeps: u32,
+    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way.
+    pub retries: u32,
+    /// Cells removed.
+    pub removed_cells: usize,
+}
+
+impl<T: Scalar> World<T> {
+    /// Advances by one step. Where that fails, the world is as it was before.
+    ///
+    /// # Errors
+    /// [`StepError`] saying which body and cell, and what to change.
+    pub fn step(&mut self) -> Result<StepReport, StepError> {
+        let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
+        self.keep();
+        let (substeps, retries) = self.move_bodies(&span).inspect_err(|_| self.undo())?;
+        let removed_cells = self.cut(&span);
+        self.steps += 1;
+        Ok(StepReport { time: span.to, substeps, retries, removed_cells })
+    }
+
+    /// Remembers where everything is.
+    fn keep(&mut self) {
+        for body in &mut self.bodies {
+            body.backup.keep(&body.state);
+        }
+    }
+
+    /// Puts everything back to where it was.
+    fn undo(&mut self) {
+        for body in &mut self.bodies {
+            body.backup.put_back(&mut body.state);
+        }
+        self.move_tips(self.time());
+    }
+
+    /// Moves the bodies over the step with as many sub-steps as it takes; gives these, and how often it was tried again.
+    fn move_bodies(&mut self, span: &Span) -> Result<(u32, u32), StepError> {
+        let mut frequency = self.squared_frequency();
+        for retries in 0..=MAX_RETRIES {
+            let substeps = self.plan_substeps(frequency)?;
+            self.grip(span);
+            self.advance(span, substeps);
+            let finite = self.bodies.iter().all(|body| body.state.is_finite());
+            if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(self.squared_frequency()) {
+                return Ok((substeps, retries));
+            }
+            // The tissue stiffened on the way: once more, for the stiffness at its end, or else for twice as many steps.
+            frequency = if finite { frequency.max(self.squared_frequency()) } else { 4.0 * frequency };
+            self.undo();
+        }
+        Err(self.diverged())
+    }
+
+    /// Bound of ω_max² over all bodies [1/s²].
+    fn squared_frequency(&mut self) -> f64 {
+        self.bodies.iter_mut().map(SimulatedBody::squared_frequency).fold(0.0, f64::max)
+    }
+
+    fn plan_substeps(&mut self, squared_frequency: f64) -> Result<u32, StepError> {
+        let step = self.config.step;
+        let needed = match self.config.substep {
+            Substep::Automatic => explicit::substeps_for(step, squared_frequency),
+            Substep::Fixed(substep) => {
+                let stable = explicit::stable_step(squared_frequency);
+                if substep > stable {
+                    let body = self.most_deformed().0.name.clone();
+                    return Err(StepError::UnstableSubstep { time: self.time(), body, substep, stable });
+                }
+                (step / substep).ceil().max(1.0)
+            }
+        };
+        if needed <= MAX_SUBSTEPS {
+            return Ok(needed as u32);
+        }
+        let time = self.time();
+        let (body, cell, stretch) = self.most_deformed();
+        Err(StepError::TooStiff { time, body: body.name.clone(), law: body.law, cell, stretch, substeps: needed, step })
+    }
+
+    /// Lets instruments take hold or let go.
+    fn grip(&mut self, span: &Span) {
+        for (number, instrument) in self.instruments.iter().enumerate() {
+            instrument.grip(number as u32, span, &mut self.bodies);
+        }
+    }
+
+    /// Moves all bodies by equal sub-steps over the step.
+    fn advance(&mut self, span: &Span, substeps: u32) {
+        let dt = self.config.step / f64::from(substeps);
+        let gravity = Vec3::from(self.config.gravity).cast();
+        for body in &mut self.bodies {
+            body.update_internal_forces();
+            body.update_external_forces(span.from, gravity);
+        }
+        for substep in 1..=substeps {
+            let end = span.from + (span.to - span.from) * (f64::from(substep) / f64::from(substeps));
+            self.move_tips(end);
+            let drive = Drive { end, tips: &self.tips, gravity };
+            for body in &mut self.bodies {
+                explicit::advance(body, dt, &drive);
+            }
+        }
+    }
+
+    /// Where the instruments are at `time`.
+    pub(super) fn move_tips(&mut self, time: f64) {
+        for (tip, instrument) in self.tips.iter_mut().zip(&self.instruments) {
+            *tip = instrument.path().at(time);
+        }
+    }
+
+    /// Lets instruments remove cells; gives how many went.
+    fn cut(&mut self, span: &Span) -> usize {
+        let mut removed = 0;
+        for instrument in &self.instruments {
+            for body in &mut self.bodies {
+                let before = body.state.removed_count;
+                self.removable.clear();
+                instrument.cut(span, body, &mut self.removable);
+                body.remove_cells(&mut self.removable);
+                removed += body.state.removed_count - before;
+            }
+        }
+        removed
+    }
+
+    fn diverged(&self) -> StepError {
+        let (body, cell, stretch) = self.most_deformed();
+        let advice = if body.law.contains("st-venant-kirchhoff") {
+            "This law loses its strength under strong compression: pull or press less, stiffen the tissue, or keep its \
+             volume with `keep-volume`"
+        } else {
+            "Pull or press less, or stiffen the tissue"
+        };
+        StepError::Diverged { time: self.time(), body: body.name.clone(), law: body.law, cell, stretch, advice }
+    }
+
+    /// The cell with the longest edge compared to rest: its body, its number, and the ratio of the lengths.
+    fn most_deformed(&self) -> (&SimulatedBody<T>, usize, f64) {
+        let mut worst = (&self.bodies[0], 0, 0.0);
+        for body in &self.bodies {
+            for cell in (0..body.mesh.cell_count()).filter(|&cell| !body.state.removed[cell]) {
+                let corners = body.mesh.cell(cell);
+                for (i, &a) in corners.iter().enumerate() {
+                    for &b in &corners[..i] {
+                        let (a, b) = (a as usize, b as usize);
+                        let length = (body.state.positions[a] - body.state.positions[b]).norm().to_f64();
+                        let ratio = length / (body.rest[a] - body.rest[b]).norm().to_f64();
+                        if ratio > worst.2 {
+                            worst = (body, cell, ratio);
+                        }
+                    }
+                }
+            }
+        }
+        worst
+    }
+}
