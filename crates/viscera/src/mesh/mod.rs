@@ -7,6 +7,7 @@ mod check;
 mod error;
 mod gauss;
 mod generate;
+mod groups;
 mod isosurface_stuffing;
 mod mesh_report;
 mod quality;

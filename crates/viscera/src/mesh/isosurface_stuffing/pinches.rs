@@ -1,7 +1,8 @@
 use std::collections::BTreeMap;
 
 use super::super::TetMesh;
-use super::super::surface_check::{Groups, edge_uses, non_manifold_edges, non_manifold_nodes};
+use super::super::groups::Groups;
+use super::super::surface_check::{edge_uses, non_manifold_edges, non_manifold_nodes};
 
 /// Opens places where the skin touches itself along an edge or in a node, so that it is a closed manifold.
 ///

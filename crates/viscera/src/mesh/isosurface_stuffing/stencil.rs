@@ -144,6 +144,6 @@ fn split_prism([top, bottom]: [[u32; 3]; 2], from_first: [bool; 3], pieces: &mut
 }
 
 /// The key of an edge.
-pub(super) fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }

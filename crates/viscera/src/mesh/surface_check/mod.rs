@@ -8,10 +8,10 @@ mod welding;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::groups::Groups;
 use super::{Point, SurfaceMesh};
 pub use error::SurfaceError;
 pub use report::{Hole, NonManifoldEdge, SurfaceReport};
-pub(in crate::mesh) use welding::Groups;
 
 /// The triangles of every edge, by its ends in ascending order.
 type EdgeUses = BTreeMap<[u32; 2], Vec<u32>>;
@@ -129,7 +129,7 @@ pub(in crate::mesh) fn non_manifold_nodes(surface: &SurfaceMesh, uses: &EdgeUses
     let mut corners_of = vec![0usize; surface.nodes.len()];
     surface.triangles.iter().flatten().for_each(|&node| corners_of[node as usize] += 1);
     // Walking from triangle to triangle over the edges at a node joins them; what is left over is a second fan.
-    let mut fans = welding::Groups::new(3 * surface.triangles.len());
+    let mut fans = Groups::new(3 * surface.triangles.len());
     let slot = |triangle: u32, node: u32| {
         let corners = surface.triangles[triangle as usize];
         3 * triangle as usize + (0..3).find(|&i| corners[i] == node).unwrap_or(0)
