@@ -144,5 +144,9 @@ fn fibres_along_a_curve_take_its_direction_at_each_place() {
     approx::assert_relative_eq!(stretch("[[0, 0, 0], [1, 0, 0]]"), 4e-3, max_relative = 0.01);
     approx::assert_relative_eq!(stretch("[[0, 0, 0], [0, 0, 1]]"), 1e-3, max_relative = 0.01);
     // Up to half the height nearest to a stretch along the bar, above to one across it: (2 mm)/4 + 2 mm.
-    approx::assert_relative_eq!(stretch("[[0.05, 0.05, 0.1], [0.05, 0.05, -10], [10, 0.05, -10], [10, 0.05, 0.3], [-10, 0.05, 0.3]]"), 2.5e-3, max_relative = 0.05);
+    approx::assert_relative_eq!(
+        stretch("[[0.05, 0.05, 0.1], [0.05, 0.05, -10], [10, 0.05, -10], [10, 0.05, 0.3], [-10, 0.05, 0.3]]"),
+        2.5e-3,
+        max_relative = 0.05
+    );
 }
