@@ -1,4 +1,4 @@
-//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
+//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; `registry.rs` is the only list of them.
 
 mod block_table;
 mod error;
