@@ -3,9 +3,11 @@
 //! Nodes are numbered from 0 and measured in metres. Corners follow the Gmsh/VTK order: a tetrahedron (a, b, c, d) has
 //! det[b−a, c−a, d−a] > 0; a hexahedron lists its bottom face counter-clockwise seen from inside, then its top face.
 
+mod check;
 mod error;
 mod gauss;
 pub mod generate;
+mod mesh_report;
 mod region;
 mod select;
 mod surface_mesh;
@@ -15,6 +17,7 @@ mod volume_mesh;
 pub use error::MeshError;
 pub use gauss::{GaussPoint, GaussRule, hexahedron_volume};
 pub use generate::{CubeCut, GenerateError, TubeDivisions};
+pub use mesh_report::MeshReport;
 pub use region::NamedRegion;
 pub use select::{Region, RegionError};
 pub use surface_mesh::SurfaceMesh;
