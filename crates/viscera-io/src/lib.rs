@@ -6,6 +6,8 @@
 //!
 //! [`write`](mod@write) has VTU and PVD for ParaView, MSH 2.2 and CSV. Every file is written aside and renamed, so that a
 //! reader sees the old file or the new one, never half of one.
+//!
+//! [`picture`] draws bodies and instruments into a PNG.
 
 mod assembly;
 mod cell_kind;
@@ -14,6 +16,7 @@ mod error;
 pub mod gmsh;
 mod imported;
 pub mod obj;
+pub mod picture;
 mod read;
 pub mod stl;
 pub mod vtk;

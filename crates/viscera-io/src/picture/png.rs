@@ -1,0 +1,57 @@
+//! Pixels, and their way into a PNG file.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::PictureError;
+
+/// A drawn picture: sRGB, 8 bits per channel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Red, green, blue per pixel, rows from the top.
+    pub pixels: Vec<u8>,
+}
+
+impl Image {
+    /// Red, green, blue at `column`, `row` from the upper left; `None` outside.
+    pub fn pixel(&self, column: usize, row: usize) -> Option<[u8; 3]> {
+        let at = (row * self.width + column) * 3;
+        let inside = column < self.width && row < self.height;
+        inside.then(|| [self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]])
+    }
+
+    /// Encodes it as PNG.
+    ///
+    /// # Errors
+    /// What `sink` reports.
+    pub fn write_png(&self, sink: &mut impl Write) -> Result<(), PictureError> {
+        let mut encoder = ::png::Encoder::new(sink, self.width as u32, self.height as u32);
+        encoder.set_color(::png::ColorType::Rgb);
+        encoder.set_depth(::png::BitDepth::Eight);
+        encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.pixels)?;
+        Ok(writer.finish()?)
+    }
+
+    /// Writes a PNG file: aside first, then renamed, so that no reader meets half a picture.
+    ///
+    /// # Errors
+    /// The folder cannot be written, or the disk is full. The file aside is removed.
+    pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), PictureError> {
+        let path = path.as_ref();
+        let mut bytes = Vec::new();
+        self.write_png(&mut bytes)?;
+        let mut aside = path.as_os_str().to_owned();
+        aside.push(".part");
+        std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path)).map_err(|source| {
+            // The first failure is the one to report; the file aside may not even exist.
+            let _ = std::fs::remove_file(&aside);
+            PictureError::Write { path: path.display().to_string(), source }
+        })
+    }
+}
