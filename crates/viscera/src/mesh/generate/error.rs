@@ -39,16 +39,22 @@ pub enum GenerateError {
         /// The smallest edge that is accepted for this shape [m].
         smallest_edge: f64,
     },
+    /// The solid is thinner than the lattice everywhere, or its bounds lie beside it.
+    #[error("no cell of edge {edge} m lies inside the solid; choose a smaller edge")]
+    NothingInside {
+        /// Edge length asked for [m].
+        edge: f64,
+    },
 }
 
 impl GenerateError {
     /// Accepts a positive, finite length and refuses any other.
-    pub(super) fn check_length(name: &'static str, value: f64) -> Result<(), Self> {
+    pub(in crate::mesh) fn check_length(name: &'static str, value: f64) -> Result<(), Self> {
         if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Self::Length { name, value }) }
     }
 
     /// Accepts `least` divisions or more.
-    pub(super) fn check_divisions(name: &'static str, value: usize, least: usize) -> Result<(), Self> {
+    pub(in crate::mesh) fn check_divisions(name: &'static str, value: usize, least: usize) -> Result<(), Self> {
         if value >= least { Ok(()) } else { Err(Self::Divisions { name, value, least }) }
     }
 }

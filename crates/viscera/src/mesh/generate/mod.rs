@@ -5,8 +5,10 @@ mod box_grid;
 mod cylinder;
 mod error;
 mod extrusion;
+mod liver;
 mod tube;
 
 pub use box_grid::CubeCut;
 pub use error::GenerateError;
+pub use liver::Liver;
 pub use tube::TubeDivisions;
