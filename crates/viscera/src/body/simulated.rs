@@ -2,6 +2,7 @@ use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, N
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
+use crate::dynamics::explicit::stable_step;
 use crate::model::frequency::{FrequencyBound, frequency_bound};
 use crate::model::{ModelKind, Scratch, VolumePenalty};
 
@@ -166,6 +167,11 @@ impl<T: Scalar> SimulatedBody<T> {
             }
         }
         self.state.positions_changed();
+    }
+
+    /// Longest stable step of the explicit scheme as the body is now [s]; infinite where nothing vibrates.
+    pub fn stable_step(&self) -> f64 {
+        stable_step(self.frequency.squared_frequency(&self.state.positions))
     }
 
     /// Cells that are not removed.
