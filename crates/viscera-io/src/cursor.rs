@@ -7,13 +7,15 @@ use crate::{ParseError, Place, Problem};
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
+    /// Places are told as bytes, not as lines.
+    pub(crate) binary: bool,
     /// Multi-byte numbers start with the highest byte.
     pub(crate) big_endian: bool,
 }
 
 impl<'a> Cursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, big_endian: false }
+        Self { bytes, at: 0, binary: false, big_endian: false }
     }
 
     /// What has not been read yet.
@@ -21,18 +23,16 @@ impl<'a> Cursor<'a> {
         &self.bytes[self.at..]
     }
 
-    /// The line that the cursor is in. Counted only when it is asked for: when something is wrong.
-    pub(crate) fn line_here(&self) -> Place {
-        self.line_of(self.at)
+    /// Where the cursor is. Lines are counted only when they are asked for: when something is wrong.
+    pub(crate) fn here(&self) -> Place {
+        self.place_of(self.at)
     }
 
-    fn line_of(&self, at: usize) -> Place {
+    fn place_of(&self, at: usize) -> Place {
+        if self.binary {
+            return Place::Byte(at);
+        }
         Place::Line(1 + self.bytes[..at.min(self.bytes.len())].iter().filter(|&&byte| byte == b'\n').count())
-    }
-
-    /// The byte that the cursor is at.
-    pub(crate) fn byte_here(&self) -> Place {
-        Place::Byte(self.at)
     }
 
     /// Refuses a count that the rest of the file cannot hold, before anything is made of it.
@@ -40,7 +40,7 @@ impl<'a> Cursor<'a> {
         let possible = self.rest().len() / smallest + 1;
         match usize::try_from(count) {
             Ok(count) if count <= possible => Ok(count),
-            _ => Err(Problem::TooMany { what, count, bytes: self.rest().len() }.at(self.line_here())),
+            _ => Err(Problem::TooMany { what, count, bytes: self.rest().len() }.at(self.here())),
         }
     }
 
@@ -59,7 +59,7 @@ impl<'a> Cursor<'a> {
     pub(crate) fn fields(&mut self, expected: &'static str) -> Result<Fields<'a>, ParseError> {
         self.skip_blank();
         if self.rest().is_empty() {
-            return Err(Problem::Truncated { expected }.at(self.line_here()));
+            return Err(Problem::Truncated { expected }.at(self.here()));
         }
         let start = self.at;
         let text = self.line();
@@ -69,8 +69,9 @@ impl<'a> Cursor<'a> {
                 columns: text.split_ascii_whitespace(),
                 expected,
                 found: 0,
+                cut: self.rest().is_empty() && !self.bytes.ends_with(b"\n"),
             }),
-            Err(_) => Err(Problem::Unexpected { expected, found: excerpt(text) }.at(self.line_of(start))),
+            Err(_) => Err(Problem::Unexpected { expected, found: excerpt(text) }.at(self.place_of(start))),
         }
     }
 
@@ -88,14 +89,14 @@ impl<'a> Cursor<'a> {
         let rest = self.rest();
         let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         if length == 0 {
-            return Err(Problem::Truncated { expected }.at(self.line_here()));
+            return Err(Problem::Truncated { expected }.at(self.here()));
         }
         match from_utf8(&rest[..length]) {
             Ok(word) => {
                 self.at += length;
                 Ok(word)
             }
-            Err(_) => Err(Problem::Unexpected { expected, found: excerpt(&rest[..length]) }.at(self.line_here())),
+            Err(_) => Err(Problem::Unexpected { expected, found: excerpt(&rest[..length]) }.at(self.here())),
         }
     }
 
@@ -114,12 +115,12 @@ impl<'a> Cursor<'a> {
     }
 
     pub(crate) fn unexpected(&self, expected: &'static str, found: &str) -> ParseError {
-        Problem::Unexpected { expected, found: excerpt(found.as_bytes()) }.at(self.line_here())
+        Problem::Unexpected { expected, found: excerpt(found.as_bytes()) }.at(self.here())
     }
 
     /// Raw bytes.
     pub(crate) fn take(&mut self, count: usize, expected: &'static str) -> Result<&'a [u8], ParseError> {
-        let taken = self.rest().get(..count).ok_or(Problem::Truncated { expected }.at(self.byte_here()))?;
+        let taken = self.rest().get(..count).ok_or(Problem::Truncated { expected }.at(self.here()))?;
         self.at += count;
         Ok(taken)
     }
@@ -160,16 +161,21 @@ pub(crate) struct Fields<'a> {
     columns: SplitAsciiWhitespace<'a>,
     expected: &'static str,
     found: usize,
+    /// The file ends with this line, without the end of a line.
+    cut: bool,
 }
 
 impl<'a> Fields<'a> {
     pub(crate) fn place(&self) -> Place {
-        self.cursor.line_here()
+        self.cursor.here()
     }
 
     /// The next column; a line that has none is reported with the description given to [`Cursor::fields`].
     pub(crate) fn word(&mut self) -> Result<&'a str, ParseError> {
-        let word = self.columns.next().ok_or_else(|| self.wrong_columns())?;
+        let word = self.columns.next().ok_or_else(|| match self.cut {
+            true => Problem::Truncated { expected: "the rest of this line" }.at(self.place()),
+            false => self.wrong_columns(),
+        })?;
         self.found += 1;
         Ok(word)
     }

@@ -1,4 +1,4 @@
-//! Meshes in and results out, for [Viscera](viscera).
+//! Meshes in, results and pictures out, for [Viscera](viscera).
 //!
 //! [`read_mesh`] reads Gmsh, VTK, STL and OBJ; [`read_volume`] also insists on a volume and checks it. Every format is one
 //! module with a `parse` over bytes, which never trusts a count that it has not held against the size of the file. What is
@@ -6,8 +6,6 @@
 //!
 //! [`write`](mod@write) has VTU and PVD for ParaView, MSH 2.2 and CSV. Every file is written aside and renamed, so that a
 //! reader sees the old file or the new one, never half of one.
-//!
-//! [`picture`] draws bodies and instruments into a PNG.
 
 mod assembly;
 mod cell_kind;

@@ -61,6 +61,7 @@ impl Soup {
 
 fn parse_binary(bytes: &[u8]) -> Result<Imported, ParseError> {
     let mut cursor = Cursor::new(bytes);
+    cursor.binary = true;
     let mut soup = Soup::default();
     cursor.take(80, "the header of a binary STL file, 80 bytes")?;
     let count = cursor.binary_i32("the number of triangles")? as u32;
@@ -72,7 +73,7 @@ fn parse_binary(bytes: &[u8]) -> Result<Imported, ParseError> {
         cursor.take(12, "the normal of a triangle")?;
         let mut corners = [0; 3];
         for corner in &mut corners {
-            let place = cursor.byte_here();
+            let place = cursor.here();
             let mut position = [0.0; 3];
             for coordinate in &mut position {
                 *coordinate = cursor.binary_f32("a coordinate")?.into();

@@ -5,7 +5,7 @@
 
 use crate::assembly::Assembly;
 use crate::cursor::Cursor;
-use crate::{Imported, Notice, ParseError, Place, Problem, vtk_cells};
+use crate::{Imported, Notice, ParseError, Problem, vtk_cells};
 
 /// Reads a legacy VTK file. Coordinates stay in the file's unit.
 ///
@@ -39,7 +39,7 @@ pub fn parse(bytes: &[u8]) -> Result<Imported, ParseError> {
         }
     }
     let Cells { connectivity, offsets } = &grid.cells;
-    vtk_cells::add_all(&mut grid.assembly, connectivity, offsets, &grid.types, file.cursor.line_here())?;
+    vtk_cells::add_all(&mut grid.assembly, connectivity, offsets, &grid.types, file.cursor.here())?;
     grid.assembly.finish()
 }
 
@@ -77,6 +77,7 @@ impl File<'_> {
             "BINARY" => true,
             other => return Err(self.cursor.unexpected("ASCII or BINARY", other)),
         };
+        self.cursor.binary = self.binary;
         self.cursor.keyword("DATASET")?;
         match self.cursor.word("the kind of data set")? {
             "UNSTRUCTURED_GRID" | "POLYDATA" => Ok(()),
@@ -84,12 +85,8 @@ impl File<'_> {
                 what: format!("a VTK data set of kind `{}`", crate::cursor::excerpt(other.as_bytes())),
                 mend: "write an UNSTRUCTURED_GRID or POLYDATA (ParaView: filter Append Datasets or Extract Surface)",
             }
-            .at(self.cursor.line_here())),
+            .at(self.cursor.here())),
         }
-    }
-
-    fn place(&self) -> Place {
-        if self.binary { self.cursor.byte_here() } else { self.cursor.line_here() }
     }
 
     fn count(&mut self, what: &'static str) -> Result<u64, ParseError> {
@@ -124,10 +121,9 @@ impl File<'_> {
         let smallest = if self.binary { if double { 24 } else { 12 } } else { 6 };
         let count = self.cursor.bounded(count, smallest, "points")?;
         for number in 0..count as u64 {
-            let place = self.cursor.byte_here();
+            let before = self.cursor.clone();
             let position = [self.real(double)?, self.real(double)?, self.real(double)?];
-            let (binary, cursor) = (self.binary, &self.cursor);
-            assembly.node(number, position, || if binary { place } else { cursor.line_here() })?;
+            assembly.node(number, position, || before.here())?;
         }
         Ok(())
     }
@@ -150,7 +146,7 @@ impl File<'_> {
             let left = size.saturating_sub(cells.connectivity.len() + cells.offsets.len() + 1);
             if !usize::try_from(nodes).is_ok_and(|nodes| nodes <= left) {
                 let (expected, found) = (nodes.max(0) as u64, left as u64);
-                return Err(Problem::Length { what: "nodes of a cell", expected, found }.at(self.place()));
+                return Err(Problem::Length { what: "nodes of a cell", expected, found }.at(self.cursor.here()));
             }
             for _ in 0..nodes {
                 cells.connectivity.push(self.integer(false, "a node of a cell")?);
@@ -191,7 +187,7 @@ impl File<'_> {
 
     /// A list of cells that all have one type.
     fn read_polygons(&mut self, grid: &mut Grid, cell_type: i64) -> Result<(), ParseError> {
-        let place = self.place();
+        let place = self.cursor.here();
         let cells = self.read_cells()?;
         let types = vec![cell_type; cells.offsets.len()];
         vtk_cells::add_all(&mut grid.assembly, &cells.connectivity, &cells.offsets, &types, place)
@@ -205,12 +201,9 @@ impl File<'_> {
             self.cursor.word("the name of an array")?;
             let components = self.count("the number of components")?;
             let tuples = self.count("the number of tuples")?;
-            let width = match self.cursor.word("the type of an array")? {
-                "char" | "unsigned_char" | "signed_char" => 1,
-                "short" | "unsigned_short" => 2,
-                "int" | "unsigned_int" | "float" => 4,
-                "long" | "unsigned_long" | "double" | "vtktypeint64" | "vtktypeuint64" | "vtkIdType" => 8,
-                other => return Err(self.cursor.unexpected("the type of an array, such as double", other)),
+            let kind = self.cursor.word("the type of an array")?;
+            let Some(width) = width_of(kind) else {
+                return Err(self.cursor.unexpected("the type of an array, such as double", kind));
             };
             self.cursor.line();
             let values = components.saturating_mul(tuples);
@@ -231,14 +224,32 @@ impl File<'_> {
     }
 }
 
+/// Bytes of a number of one of VTK's types.
+fn width_of(kind: &str) -> Option<usize> {
+    match kind {
+        "char" | "unsigned_char" | "signed_char" => Some(1),
+        "short" | "unsigned_short" => Some(2),
+        "int" | "unsigned_int" | "float" => Some(4),
+        "long" | "unsigned_long" | "double" | "vtktypeint64" | "vtktypeuint64" | "vtkIdType" => Some(8),
+        _ => None,
+    }
+}
+
 /// Names of the arrays that follow, as far as they stand in plain words.
 fn names_of_data(bytes: &[u8]) -> Vec<String> {
     let mut names = Vec::new();
     for line in bytes.split(|&byte| byte == b'\n') {
         let Ok(line) = std::str::from_utf8(line) else { continue };
-        let mut words = line.split_ascii_whitespace();
-        let attribute = matches!(words.next(), Some("SCALARS" | "VECTORS" | "TENSORS" | "NORMALS" | "FIELD"));
-        names.extend(words.next().filter(|_| attribute).map(str::to_owned));
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        match words[..] {
+            ["SCALARS" | "VECTORS" | "TENSORS" | "NORMALS", name, ..] => names.push(name.to_owned()),
+            // An array of a FIELD.
+            [name, components, tuples, kind] if width_of(kind).is_some() => {
+                let counts = [components, tuples].map(str::parse::<u64>);
+                names.extend(counts.iter().all(Result::is_ok).then(|| name.to_owned()));
+            }
+            _ => {}
+        }
     }
     names
 }

@@ -73,6 +73,7 @@ fn read_format(cursor: &mut Cursor) -> Result<Format, ParseError> {
         .at(place));
     }
     if binary {
+        cursor.binary = true;
         match cursor.binary_i32("the number 1 that tells the byte order")? {
             1 => {}
             0x0100_0000 => cursor.big_endian = true,
@@ -100,7 +101,7 @@ fn skip_section(cursor: &mut Cursor, section: &str) -> Result<(), ParseError> {
     let end = format!("$End{}", &section[1..]);
     match cursor.skip_past(end.as_bytes()) {
         true => Ok(()),
-        false => Err(Problem::Truncated { expected: "the end of a section ($End…)" }.at(cursor.line_here())),
+        false => Err(Problem::Truncated { expected: "the end of a section ($End…)" }.at(cursor.here())),
     }
 }
 
@@ -126,5 +127,5 @@ fn parametric(cursor: &Cursor) -> ParseError {
         what: "a mesh with parametric nodes".to_owned(),
         mend: "save it without them (in Gmsh: Mesh.SaveParametric = 0)",
     }
-    .at(cursor.line_here())
+    .at(cursor.here())
 }

@@ -44,7 +44,7 @@ fn read_nodes(
     }
     cursor.line();
     for _ in 0..cursor.bounded(count, 28, "nodes")? {
-        let place = cursor.byte_here();
+        let place = cursor.here();
         let number = cursor.binary_i32("the number of a node")?;
         let mut position = [0.0; 3];
         for coordinate in &mut position {
@@ -103,7 +103,7 @@ fn read_binary_cells(
     let mut corners = Vec::new();
     let mut left = count;
     while left > 0 {
-        let place = cursor.byte_here();
+        let place = cursor.here();
         let kind_number = cursor.binary_i32("the type of a block of elements")?;
         let in_block = cursor.binary_i32("the number of elements in a block")?;
         let tags = cursor.binary_i32("the number of tags of an element")?;
@@ -121,7 +121,7 @@ fn read_binary_cells(
         };
         left -= in_block;
         for _ in 0..in_block {
-            let place = cursor.byte_here();
+            let place = cursor.here();
             let cell = cursor.binary_i32("the number of an element")?.unsigned_abs().into();
             let mut group = 0;
             for tag in 0..tags {

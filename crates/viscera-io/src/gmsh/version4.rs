@@ -27,7 +27,7 @@ pub(super) fn parse(cursor: Cursor, format: &Format, assembly: &mut Assembly) ->
                     what: "a partitioned mesh".to_owned(),
                     mend: "save it in one part (in Gmsh: `gmsh in.msh -save -part 0 -format msh41 -o out.msh`)",
                 }
-                .at(reader.cursor.line_here()));
+                .at(reader.cursor.here()));
             }
             other => skip_section(&mut reader.cursor, other)?,
         }
@@ -65,7 +65,7 @@ impl Reader<'_> {
     }
 
     fn place(&self) -> Place {
-        if self.binary { self.cursor.byte_here() } else { self.cursor.line_here() }
+        self.cursor.here()
     }
 
     /// Binary data starts right behind the line with the section's name.
@@ -170,12 +170,12 @@ fn read_cells(
     let mut found = 0;
     let mut corners = Vec::new();
     for _ in 0..blocks {
-        let place = reader.place();
+        let before = reader.cursor.clone();
         let dimension = reader.int("the dimension of an entity")?;
         let tag = reader.int("the tag of an entity")?;
         let kind_number = i64::from(reader.int("the type of a block of elements")?);
         let Some((kind, size)) = CellKind::from_gmsh(kind_number) else {
-            return Err(Problem::UnknownCell { number: kind_number }.at(place));
+            return Err(Problem::UnknownCell { number: kind_number }.at(before.here()));
         };
         let count = reader.count("elements of a block", 2 + 2 * size, reader.word * (1 + size))?;
         let set = u8::try_from(dimension).ok().and_then(|dimension| entities.get(&(dimension, tag)));

@@ -101,7 +101,7 @@ impl<'a> Storage<'a> {
     }
 
     fn numbers<T, const SIZE: usize>(&self, bytes: &[u8], number: impl Fn([u8; SIZE]) -> T) -> Result<Vec<T>, Problem> {
-        if bytes.len() % SIZE != 0 {
+        if !bytes.len().is_multiple_of(SIZE) {
             let (expected, found) = (bytes.len().next_multiple_of(SIZE) as u64, bytes.len() as u64);
             return Err(Problem::Length { what: "bytes of an array", expected, found });
         }

@@ -64,7 +64,8 @@ fn check<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) ->
         }
     }
     for (name, region) in &mesh.regions {
-        let missing_node = region.nodes.iter().chain(region.faces.iter().flatten()).find(|&&node| node as usize >= nodes);
+        let missing_node =
+            region.nodes.iter().chain(region.faces.iter().flatten()).find(|&&node| node as usize >= nodes);
         let missing_cell = region.cells.iter().find(|&&cell| cell as usize >= mesh.cells.len());
         let missing = missing_node.map(|node| ("node", node)).or(missing_cell.map(|cell| ("cell", cell)));
         if let Some((what, &number)) = missing {

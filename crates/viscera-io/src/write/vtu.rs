@@ -186,7 +186,7 @@ fn write_document(out: &mut impl Write, grid: &Grid, encoding: Encoding) -> io::
             out.write_all(&(bytes.len() as u64).to_le_bytes())?;
             out.write_all(bytes)?;
         }
-        writeln!(out, "</AppendedData>")?;
+        writeln!(out, "\n</AppendedData>")?;
     }
     writeln!(out, "</VTKFile>")
 }

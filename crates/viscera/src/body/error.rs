@@ -64,7 +64,7 @@ pub enum BodyError {
         /// What the region is for.
         purpose: &'static str,
         /// What is wrong with it.
-        source: RegionError,
+        source: Box<RegionError>,
     },
     /// The mesh is not fit for simulation.
     #[error("body `{body}`: {source}")]

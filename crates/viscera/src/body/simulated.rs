@@ -65,7 +65,8 @@ impl<T: Scalar> SimulatedBody<T> {
         }
         let frequency = frequency_bound(&mesh, recipe.tissue(), &density, keep_volume).map_err(model_error)?;
 
-        let region_error = |purpose| move |source| BodyError::Region { body: body(), purpose, source };
+        let region_error =
+            |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
         let mut motions = vec![NodeMotion::Free; mesh.nodes().len()];
         let mut curves = Vec::new();
         for (number, (region, curve)) in prescribed.into_iter().enumerate() {
@@ -76,11 +77,7 @@ impl<T: Scalar> SimulatedBody<T> {
         for region in &fixed {
             mark(&mut motions, region, &mesh, NodeMotion::Fixed).map_err(region_error("a fixed region"))?;
         }
-        let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| BodyError::Region {
-            body: name.clone(),
-            purpose,
-            source,
-        })?;
+        let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| region_error(purpose)(source))?;
 
         let cell_volumes = cell_volumes(&mesh);
         let density_of = |cell: usize| density[if density.len() == 1 { 0 } else { cell }];
@@ -288,8 +285,10 @@ impl Boundary {
         let faces = match mesh {
             VolumeMesh::Tet(mesh) => TetTopology::new(mesh).faces,
             VolumeMesh::Hex(mesh) => {
-                let halves =
-                    |([a, b, c, d], cells): ([u32; 4], _)| [[a, b, c], [a, c, d]].map(|nodes| Face { nodes, cells });
+                let halves = |face: Face<4>| {
+                    let [a, b, c, d] = face.nodes;
+                    [[a, b, c], [a, c, d]].map(|nodes| Face { nodes, cells: face.cells })
+                };
                 mesh.faces().into_iter().flat_map(halves).collect()
             }
         };

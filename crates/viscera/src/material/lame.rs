@@ -10,6 +10,9 @@ pub struct Lame {
 }
 
 impl Lame {
+    /// E = 5 kPa, ν = 0.4: as soft as liver, and compressible enough for every element.
+    pub(super) const EXAMPLE: Self = Self { lambda: 5e3 * 0.4 / (1.4 * 0.2), mu: 5e3 / 2.8 };
+
     /// From λ [Pa, > −2μ/3] and μ [Pa, > 0].
     ///
     /// # Errors

@@ -38,7 +38,7 @@ pub trait Law<R: Real>: Copy {
 }
 
 /// A law as a family over all kinds of numbers, with what the engine needs to know about it.
-pub trait LawFamily: Law<f64> + PartialEq + std::fmt::Debug + Send + Sync + 'static {
+pub trait LawFamily: Law<f64> + Into<LawKind> + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// The same law over `R`.
     type At<R: Real>: Law<R>;
 
@@ -55,6 +55,9 @@ pub trait LawFamily: Law<f64> + PartialEq + std::fmt::Debug + Send + Sync + 'sta
     fn from_values(values: &[f64]) -> Self;
     /// The parameter values of this law.
     fn values(&self) -> Vec<f64>;
+    /// A soft tissue of this law: what a menu offers first, and what the conformance suites are run with. Every parameter
+    /// has a value at which its part of the energy can be felt.
+    fn example() -> Self;
     /// Stiffness at rest: λ, μ and, for fibred laws, direction and κ_a.
     fn at_rest(&self) -> RestStiffness;
     /// The same as [`LawFamily::at_rest`], if ψ is quadratic in the strain (small or Green's): what tensor-mass needs.

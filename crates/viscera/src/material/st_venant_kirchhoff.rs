@@ -91,6 +91,10 @@ impl LawFamily for StVenantKirchhoff {
         vec![self.lambda, self.mu]
     }
 
+    fn example() -> Self {
+        Self::new(Lame::EXAMPLE)
+    }
+
     fn at_rest(&self) -> RestStiffness {
         RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
     }

@@ -11,7 +11,7 @@ pub struct Tissue {
 
 impl Tissue {
     /// The same law in every cell.
-    pub fn uniform<L: LawFamily + Into<LawKind>>(law: L) -> Self {
+    pub fn uniform<L: LawFamily>(law: L) -> Self {
         Self { values: law.values(), stride: L::PARAMETERS.len(), kind: law.into() }
     }
 
@@ -20,7 +20,7 @@ impl Tissue {
     /// # Errors
     /// [`MaterialError::WrongCount`] for an empty list; a list of another length than the mesh is found when the body
     /// is built.
-    pub fn per_cell<L: LawFamily + Into<LawKind>>(laws: &[L]) -> Result<Self, MaterialError> {
+    pub fn per_cell<L: LawFamily>(laws: &[L]) -> Result<Self, MaterialError> {
         let first = *laws.first().ok_or(MaterialError::WrongCount { given: 0, cells: 1 })?;
         Ok(Self {
             kind: first.into(),

@@ -24,12 +24,15 @@ pub struct Fibre<R = f64> {
 }
 
 impl Fibre {
+    /// Oblique fibres, twice as stiff along themselves as [`Lame::EXAMPLE`] is: κ_a = E/2.
+    const EXAMPLE: Self = Self { direction: Vec3::new(2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0), stiffness: 2.5e3 };
+
     /// Fibres along `direction` (any length but zero) with the Lamé parameters `longitudinal` along them, in a matrix
     /// with `transverse` ones.
     ///
     /// # Errors
-    /// [`MaterialError::NoDirection`]; [`MaterialError::OutOfRange`] where fibres so soft would make the tissue unstable
-    /// (the modulus along them, λ_L + 2μ_L, must stay positive).
+    /// [`MaterialError::NoDirection`]; [`MaterialError::OutOfRange`] where fibres so soft would make the tissue unstable:
+    /// the stiffness C + 2κ_a a0a0⊗a0a0 is positive as long as 1 + 2κ_a a0a0:C⁻¹:a0a0 = 1 + 2κ_a/E is.
     pub fn new(direction: [f64; 3], longitudinal: Lame, transverse: Lame) -> Result<Self, MaterialError> {
         let unit = Vec3::from(direction).normalized().ok_or(MaterialError::NoDirection { direction })?;
         let stiffness = 0.5 * (longitudinal.lambda - transverse.lambda) + longitudinal.mu - transverse.mu;
@@ -170,6 +173,10 @@ macro_rules! transverse_family {
             fn values(&self) -> Vec<f64> {
                 let [x, y, z] = self.fibre.direction.to_array();
                 vec![self.matrix.lambda, self.matrix.mu, x, y, z, self.fibre.stiffness]
+            }
+
+            fn example() -> Self {
+                Self { matrix: $matrix::example(), fibre: Fibre::EXAMPLE }
             }
 
             fn at_rest(&self) -> RestStiffness {

@@ -1,7 +1,8 @@
 //! The check of a mesh on its way in: repairs what has one repair, reports what is odd, refuses what cannot be simulated.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
+use super::gauss::gauss_jacobians;
 use super::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, MeshError, MeshReport, Point, TET_EDGES, TET_FACES, TetMesh};
 use crate::math::Mat3;
 
@@ -203,14 +204,11 @@ fn find_coincident(nodes: &[Point], distance: f64, report: &mut MeshReport) {
     let mut in_box: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(nodes.len());
     let box_at = |place: Point| place.to_array().map(|coordinate| (coordinate / (2.0 * distance)).floor() as i64);
     for (number, &node) in nodes.iter().enumerate() {
-        let boxes: HashSet<[i64; 3]> = (0..8)
-            .map(|octant| {
-                let step = |axis: i32| if octant >> axis & 1 == 0 { -distance } else { distance };
-                box_at(node + Point::new(step(0), step(1), step(2)))
-            })
-            .collect();
-        let near = boxes.iter().filter_map(|key| in_box.get(key)).flatten();
-        let earlier = near.copied().filter(|&other| (nodes[other as usize] - node).norm() <= distance).min();
+        let near = (0..8).filter_map(|octant| {
+            let step = |axis: i32| if octant >> axis & 1 == 0 { -distance } else { distance };
+            in_box.get(&box_at(node + Point::new(step(0), step(1), step(2))))
+        });
+        let earlier = near.flatten().copied().filter(|&other| (nodes[other as usize] - node).norm() <= distance).min();
         match earlier {
             Some(other) => {
                 report.coincident_nodes += 1;
@@ -244,31 +242,10 @@ fn tetrahedron(corners: [Point; 4]) -> Form {
 /// The cube of edge L has Jacobian (L/2)³ in ξ, η, ζ ∈ [−1, 1]. It is taken at the 2×2×2 Gauss points, where elements take
 /// it, so that a cell with one blunt corner is not refused.
 fn hexahedron(corners: [Point; 8]) -> Form {
-    const SIGNS: [[f64; 3]; 8] = [
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ];
     let longest = longest_edge(&corners, &HEX_EDGES);
-    let jacobians = SIGNS.map(|signs| {
-        let point = signs.map(|sign| sign / 3.0_f64.sqrt());
-        let mut columns = [Point::ZERO; 3];
-        for (corner, at) in corners.iter().zip(SIGNS) {
-            for (axis, column) in columns.iter_mut().enumerate() {
-                let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
-                let slope = at[axis] * (1.0 + at[second] * point[second]) * (1.0 + at[third] * point[third]) / 4.0;
-                *column = *column + *corner * (slope / longest);
-            }
-        }
-        Mat3::from_columns(columns[0], columns[1], columns[2]).determinant()
-    });
-    let volume = jacobians.iter().sum::<f64>() / 8.0 * longest.powi(3);
-    form_of(jacobians, volume, undecided(&corners, longest))
+    let jacobians = gauss_jacobians(&corners);
+    let volume = jacobians.iter().sum();
+    form_of(jacobians.map(|jacobian| 8.0 * jacobian / longest.powi(3)), volume, undecided(&corners, longest))
 }
 
 fn form_of<const POINTS: usize>(jacobians: [f64; POINTS], volume: f64, undecided: f64) -> Form {

@@ -94,16 +94,16 @@ impl HexMesh {
 
 /// Volume of a trilinear hexahedron [m³], folded parts negative; 2×2×2 points are exact.
 pub fn hexahedron_volume(corners: &[Point; 8]) -> f64 {
+    gauss_jacobians(corners).iter().sum()
+}
+
+/// Jacobians of a trilinear hexahedron at the 2×2×2 points [m³]; each point stands for as much volume.
+pub(super) fn gauss_jacobians(corners: &[Point; 8]) -> [f64; 8] {
     let line = GaussRule::Two.line();
-    let mut volume = 0.0;
-    for &(x, _) in line {
-        for &(y, _) in line {
-            for &(z, _) in line {
-                volume += jacobian(corners, &reference_gradients([x, y, z])).determinant();
-            }
-        }
-    }
-    volume
+    std::array::from_fn(|point| {
+        let place = [point >> 2, point >> 1 & 1, point & 1].map(|step| line[step].0);
+        jacobian(corners, &reference_gradients(place)).determinant()
+    })
 }
 
 /// Gradients of the eight shape functions N_a = ⅛ Π (1 + ξ_a ξ) in the reference cube.

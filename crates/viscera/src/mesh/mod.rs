@@ -6,7 +6,8 @@
 mod check;
 mod error;
 mod gauss;
-pub mod generate;
+mod generate;
+mod groups;
 mod isosurface_stuffing;
 mod mesh_report;
 mod quality;

@@ -1,4 +1,4 @@
-use super::{Point, TetTopology, VolumeMesh};
+use super::{Face, Point, TetTopology, VolumeMesh};
 
 /// A part of a mesh, named by what a user sees instead of by numbers. Tests are on the rest shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,8 +184,8 @@ impl Region {
             VolumeMesh::Hex(mesh) => mesh
                 .faces()
                 .into_iter()
-                .filter(|(quad, cells)| cells.1.is_none() && chosen(quad))
-                .flat_map(|([a, b, c, d], (cell, _))| [([a, b, c], cell), ([a, c, d], cell)])
+                .filter(|face| face.cells.1.is_none() && chosen(&face.nodes))
+                .flat_map(|Face { nodes: [a, b, c, d], cells: (cell, _) }| [([a, b, c], cell), ([a, c, d], cell)])
                 .collect(),
         };
         if triangles.is_empty() { Err(RegionError::NoFaces { region: self.describe() }) } else { Ok(triangles) }
@@ -218,14 +218,14 @@ impl Region {
             Self::Nearest(place) => nearest(nodes, *place).into_iter().collect(),
             Self::Box { low, high } => having(&|p| (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])),
             Self::Sphere { centre, radius } => {
-                if !(*radius > 0.0) {
+                if radius.is_nan() || *radius <= 0.0 {
                     return Err(self.impossible("its radius must be positive"));
                 }
                 having(&|p| (p - *centre).squared_norm() <= radius * radius)
             }
             Self::Plane { point, normal, thickness } => {
                 let normal = normal.normalized().ok_or_else(|| self.impossible("its normal has no direction"))?;
-                if !(*thickness >= 0.0) {
+                if thickness.is_nan() || *thickness < 0.0 {
                     return Err(self.impossible("its thickness must not be negative"));
                 }
                 let half = (0.5 * thickness).max(1e-6 * mesh.size());

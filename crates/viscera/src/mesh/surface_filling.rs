@@ -1,5 +1,6 @@
 use std::fmt;
 
+use super::groups::Groups;
 use super::surface_check::SurfaceReport;
 use super::{SignedDistance, SurfaceError, SurfaceMesh, TetMesh, TetTopology, TriangleTree};
 
@@ -102,7 +103,7 @@ impl Thickness {
 
 /// How many parts a mesh has that no face connects.
 fn pieces(mesh: &TetMesh) -> usize {
-    let mut groups = super::surface_check::Groups::new(mesh.cells.len());
+    let mut groups = Groups::new(mesh.cells.len());
     let joined = TetTopology::new(mesh)
         .faces
         .iter()

@@ -2,12 +2,12 @@ use std::collections::HashMap;
 
 use super::{HexMesh, Mesh, SurfaceMesh, TET_EDGES, TET_FACES, TetMesh};
 
-/// A triangle between two tetrahedra, or between one and the outside.
+/// A face between two cells, or between one and the outside: a triangle, or a quadrilateral of a hexahedral mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Face {
-    /// Corners, counter-clockwise seen from outside the first tetrahedron.
-    pub nodes: [u32; 3],
-    /// The tetrahedra on its two sides; the second is absent on the surface.
+pub struct Face<const CORNERS: usize = 3> {
+    /// Corners, counter-clockwise seen from outside the first cell.
+    pub nodes: [u32; CORNERS],
+    /// The cells on its two sides; the second is absent on the surface.
     pub cells: (u32, Option<u32>),
 }
 
@@ -106,10 +106,9 @@ impl TetMesh {
 }
 
 impl HexMesh {
-    /// Every face once, in the order in which the cells meet them: corners, counter-clockwise seen from outside the first
-    /// cell, and the cells on its two sides.
-    pub fn faces(&self) -> Vec<([u32; 4], (u32, Option<u32>))> {
-        let mut faces: Vec<([u32; 4], (u32, Option<u32>))> = Vec::new();
+    /// Every face once, in the order in which the cells meet them.
+    pub fn faces(&self) -> Vec<Face<4>> {
+        let mut faces: Vec<Face<4>> = Vec::new();
         let mut face_of: HashMap<[u32; 4], usize> = HashMap::with_capacity(self.cells.len() * 4);
         for (cell, corners) in self.cells.iter().enumerate() {
             for local in super::HEX_FACES {
@@ -117,10 +116,10 @@ impl HexMesh {
                 let mut key = nodes;
                 key.sort_unstable();
                 match face_of.get(&key) {
-                    Some(&face) => faces[face].1.1 = Some(cell as u32),
+                    Some(&face) => faces[face].cells.1 = Some(cell as u32),
                     None => {
                         face_of.insert(key, faces.len());
-                        faces.push((nodes, (cell as u32, None)));
+                        faces.push(Face { nodes, cells: (cell as u32, None) });
                     }
                 }
             }
@@ -130,7 +129,7 @@ impl HexMesh {
 
     /// Corners of the surface quadrilaterals, counter-clockwise seen from outside.
     pub fn surface_quads(&self) -> Vec<[u32; 4]> {
-        self.faces().into_iter().filter(|(_, cells)| cells.1.is_none()).map(|(quad, _)| quad).collect()
+        self.faces().into_iter().filter(|face| face.cells.1.is_none()).map(|face| face.nodes).collect()
     }
 
     /// The outward surface, each quadrilateral cut into two triangles; nodes keep their numbers.

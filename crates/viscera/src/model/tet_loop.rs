@@ -52,10 +52,13 @@ impl RestTet {
     /// The tetrahedron `cell` of `mesh`.
     ///
     /// # Errors
-    /// [`MeshError::Degenerate`] where the volume is not positive.
+    /// [`MeshError::Degenerate`] where the volume is not positive, or no larger than rounding makes that of four corners
+    /// in a plane: ε |x| h², with h the longest edge.
     pub(crate) fn new(mesh: &TetMesh, cell: usize) -> Result<Self, MeshError> {
         let rest = Self::measure(mesh, cell);
-        if rest.volume > 0.0 && rest.inverse.is_finite() {
+        let reach = mesh.corners(cell).map(|corner| corner.norm()).into_iter().fold(0.0, f64::max);
+        let edge = mesh.edge_matrix(cell).columns.map(|edge| edge.squared_norm()).into_iter().fold(0.0, f64::max);
+        if rest.volume > 4.0 * f64::EPSILON * reach * edge && rest.inverse.is_finite() {
             Ok(rest)
         } else {
             Err(MeshError::Degenerate { cell, corners: mesh.cells[cell].to_vec() })

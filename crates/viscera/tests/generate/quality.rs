@@ -41,7 +41,7 @@ fn the_report_counts_angles_and_finds_the_worst_cell() {
     assert_eq!(report.dihedral_histogram[4], 2 * 48);
     assert_relative_eq!(report.total_volume, 1.0, max_relative = 1e-12);
 
-    mesh.nodes[26] = mesh.nodes[26] * 0.8;
+    mesh.nodes[26].z = 0.6;
     let report = mesh.quality().unwrap();
     assert!(mesh.cells[report.worst_cell].contains(&26), "the cells of the moved node are the worst");
     let text = report.to_string();

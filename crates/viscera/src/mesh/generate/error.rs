@@ -30,7 +30,7 @@ pub enum GenerateError {
         least: usize,
     },
     /// The edge length asks for more cells than node numbers can count and memory can hold.
-    #[error("an edge of {edge} m would make about {cells:.1e} cells; choose an edge of {} m or more", smallest_edge)]
+    #[error("an edge of {edge} m would make about {cells:.1e} cells; choose an edge of {smallest_edge:.2e} m or more")]
     TooFine {
         /// Edge length asked for [m].
         edge: f64,

@@ -1,7 +1,7 @@
 //! Isosurface stuffing: tetrahedra of bounded dihedral angles inside any smooth solid.
 //!
 //! A body-centred cubic lattice of good tetrahedra is laid over the solid. Lattice nodes that the skin passes closely are
-//! moved onto it ([`warp`]); the tetrahedra that it still cuts are replaced by the part inside ([`stencil`]). Nodes on the
+//! moved onto it (`warp`); the tetrahedra that it still cuts are replaced by the part inside (`stencil`). Nodes on the
 //! skin lie exactly on it, and no cell is thin, however the skin runs: the angles come from the lattice and the thresholds
 //! of warping, not from the solid.
 //!
@@ -9,6 +9,7 @@
 //! Transactions on Graphics 26(3), 2007, the uniform lattice.
 
 mod lattice;
+mod pinches;
 mod skin;
 mod stencil;
 mod warp;
@@ -21,8 +22,8 @@ impl TetMesh {
     /// Fills a solid with tetrahedra whose lattice has cubes of the given `edge` [m].
     ///
     /// The edges of inner cells are `edge` and 0.87 `edge` long, their volume is `edge³ / 12`; all dihedral angles lie
-    /// between 10.7° and 164.8°. Creases are rounded off at the size of an edge, and parts thinner than about an edge
-    /// are lost: [`SignedDistance`] is asked at the lattice nodes only.
+    /// between 10.7° and 164.8°. The skin is a closed manifold. Creases are rounded off at the size of an edge, and parts
+    /// thinner than about an edge are lost: [`SignedDistance`] is asked at the lattice nodes only.
     ///
     /// # Errors
     /// [`GenerateError::Length`] for an edge or an extent that is not positive, [`GenerateError::TooFine`] beyond
@@ -32,7 +33,8 @@ impl TetMesh {
         let mut skin = Skin::sample(&lattice, |place| solid.distance(place));
         let mut cuts = crossings(&lattice, &skin, |place| solid.distance(place));
         warp::onto_skin(&lattice, &mut skin, &mut cuts);
-        let mesh = stencil::fill(&lattice, &skin, &cuts);
+        let mut mesh = stencil::fill(&lattice, &skin, &cuts, |place| solid.distance(place));
+        pinches::open(&mut mesh);
         if mesh.cells.is_empty() { Err(GenerateError::NothingInside { edge }) } else { Ok(mesh) }
     }
 
@@ -110,7 +112,7 @@ mod tests {
         for _ in 0..30 {
             let (mut skin, mut cuts) = rough_skin(&lattice, &mut dice);
             warp::onto_skin(&lattice, &mut skin, &mut cuts);
-            let mesh = stencil::fill(&lattice, &skin, &cuts);
+            let mesh = stencil::fill(&lattice, &skin, &cuts, |_| -1.0);
             for cell in 0..mesh.cells.len() {
                 let quality = mesh.cell_quality(cell);
                 smallest = smallest.min(quality.smallest_dihedral.to_degrees());

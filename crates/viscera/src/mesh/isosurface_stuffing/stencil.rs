@@ -1,11 +1,14 @@
 use std::collections::HashMap;
 
-use super::super::TetMesh;
+use super::super::{Point, TetMesh, TetQuality};
 use super::lattice::{Lattice, LatticeCell};
 use super::skin::{Cut, Skin};
 
 /// Replaces every lattice tetrahedron by the part of it inside the skin.
-pub(super) fn fill(lattice: &Lattice, skin: &Skin, cuts: &[Cut]) -> TetMesh {
+///
+/// Of one with all corners on the skin the signs say nothing: it counts where its middle is inside and its angles keep to
+/// the bounds, which warping four corners does not promise.
+pub(super) fn fill(lattice: &Lattice, skin: &Skin, cuts: &[Cut], distance: impl Fn(Point) -> f64) -> TetMesh {
     let lattice_nodes = skin.value.len() as u32;
     let cut_of: HashMap<[u32; 2], u32> =
         cuts.iter().zip(lattice_nodes..).map(|(cut, number)| (sorted(cut.ends), number)).collect();
@@ -19,7 +22,15 @@ pub(super) fn fill(lattice: &Lattice, skin: &Skin, cuts: &[Cut]) -> TetMesh {
     let mut number_of = vec![u32::MAX; lattice_nodes as usize + cuts.len()];
     let mut pieces = Vec::with_capacity(3);
     for cell in lattice.cells() {
-        stencil.pieces(cell, &mut pieces);
+        if cell.iter().all(|&node| skin.value[node as usize] == 0.0) {
+            let corners = cell.map(|node| skin.place[node as usize]);
+            let middle = corners.into_iter().fold(Point::ZERO, |sum, corner| sum + corner) * 0.25;
+            if keeps_bounds(&TetQuality::of(corners)) && distance(middle) < 0.0 {
+                pieces.push(cell);
+            }
+        } else {
+            stencil.pieces(cell, &mut pieces);
+        }
         for piece in pieces.drain(..) {
             let corners = piece.map(|node| {
                 let number = &mut number_of[node as usize];
@@ -37,6 +48,13 @@ pub(super) fn fill(lattice: &Lattice, skin: &Skin, cuts: &[Cut]) -> TetMesh {
         }
     }
     mesh
+}
+
+/// The bounds that all other cells keep.
+fn keeps_bounds(quality: &TetQuality) -> bool {
+    quality.volume > 0.0
+        && quality.smallest_dihedral > 10.7f64.to_radians()
+        && quality.largest_dihedral < 164.8f64.to_radians()
 }
 
 /// Which pieces of a lattice tetrahedron lie inside, by the signs at its corners.

@@ -6,12 +6,12 @@ mod orientation;
 mod report;
 mod welding;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::groups::Groups;
 use super::{Point, SurfaceMesh};
 pub use error::SurfaceError;
 pub use report::{Hole, NonManifoldEdge, SurfaceReport};
-pub(in crate::mesh) use welding::Groups;
 
 /// The triangles of every edge, by its ends in ascending order.
 type EdgeUses = BTreeMap<[u32; 2], Vec<u32>>;
@@ -74,7 +74,7 @@ impl SurfaceMesh {
     }
 }
 
-fn edge_uses(triangles: &[[u32; 3]]) -> EdgeUses {
+pub(in crate::mesh) fn edge_uses(triangles: &[[u32; 3]]) -> EdgeUses {
     let mut uses = EdgeUses::new();
     for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
         for [from, to] in [[a, b], [b, c], [c, a]] {
@@ -84,27 +84,27 @@ fn edge_uses(triangles: &[[u32; 3]]) -> EdgeUses {
     uses
 }
 
-/// Loops of free edges, walked against the direction of their triangles, the longest first.
+/// Loops of free edges, the longest first.
 fn holes(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<Hole> {
-    let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (&[a, b], triangles) in uses.iter().filter(|(_, triangles)| triangles.len() == 1) {
-        let corners = surface.triangles[triangles[0] as usize];
-        let forwards = (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b);
-        let (from, to) = if forwards { (b, a) } else { (a, b) };
-        next.entry(from).or_default().push(to);
+    let mut free = BTreeMap::<u32, BTreeSet<u32>>::new();
+    for &[a, b] in uses.iter().filter(|(_, triangles)| triangles.len() == 1).map(|(edge, _)| edge) {
+        free.entry(a).or_default().insert(b);
+        free.entry(b).or_default().insert(a);
     }
     let mut holes = Vec::new();
-    while let Some(&start) = next.iter().find(|(_, ends)| !ends.is_empty()).map(|(node, _)| node) {
-        let mut nodes = vec![start];
+    while let Some((&start, _)) = free.first_key_value() {
+        // Every node has an even number of free edges, so the walk ends where it began.
+        let mut nodes = Vec::new();
         let mut here = start;
-        while let Some(to) = next.get_mut(&here).and_then(Vec::pop) {
-            if to == start {
+        while let Some(next) = free.get_mut(&here).and_then(BTreeSet::pop_first) {
+            nodes.push(here);
+            free.entry(next).or_default().remove(&here);
+            here = next;
+            if here == start {
                 break;
             }
-            nodes.push(to);
-            here = to;
         }
-        next.retain(|_, ends| !ends.is_empty());
+        free.retain(|_, ends| !ends.is_empty());
         let place = |i: usize| surface.nodes[nodes[i % nodes.len()] as usize];
         let length = (0..nodes.len()).map(|i| (place(i + 1) - place(i)).norm()).sum();
         let near = (0..nodes.len()).fold(Point::ZERO, |sum, i| sum + place(i)) / nodes.len() as f64;
@@ -114,7 +114,7 @@ fn holes(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<Hole> {
     holes
 }
 
-fn non_manifold_edges(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<NonManifoldEdge> {
+pub(in crate::mesh) fn non_manifold_edges(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<NonManifoldEdge> {
     let shared = uses.iter().filter(|(_, triangles)| triangles.len() > 2);
     shared
         .map(|(&nodes, triangles)| {
@@ -125,11 +125,11 @@ fn non_manifold_edges(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<NonManifold
 }
 
 /// Nodes whose triangles fall into several fans that share no edge at the node.
-fn non_manifold_nodes(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<u32> {
+pub(in crate::mesh) fn non_manifold_nodes(surface: &SurfaceMesh, uses: &EdgeUses) -> Vec<u32> {
     let mut corners_of = vec![0usize; surface.nodes.len()];
     surface.triangles.iter().flatten().for_each(|&node| corners_of[node as usize] += 1);
     // Walking from triangle to triangle over the edges at a node joins them; what is left over is a second fan.
-    let mut fans = welding::Groups::new(3 * surface.triangles.len());
+    let mut fans = Groups::new(3 * surface.triangles.len());
     let slot = |triangle: u32, node: u32| {
         let corners = surface.triangles[triangle as usize];
         3 * triangle as usize + (0..3).find(|&i| corners[i] == node).unwrap_or(0)

@@ -62,30 +62,3 @@ fn merge_nodes(original: &SurfaceMesh, report: &mut SurfaceReport) -> (Vec<Point
     }
     (nodes, number_of)
 }
-
-/// Things that are joined step by step into groups (union-find).
-pub(in crate::mesh) struct Groups {
-    parent: Vec<usize>,
-}
-
-impl Groups {
-    pub(in crate::mesh) fn new(things: usize) -> Self {
-        Self { parent: (0..things).collect() }
-    }
-
-    /// The thing that stands for the group of another one.
-    pub(in crate::mesh) fn root(&mut self, mut thing: usize) -> usize {
-        while self.parent[thing] != thing {
-            self.parent[thing] = self.parent[self.parent[thing]];
-            thing = self.parent[thing];
-        }
-        thing
-    }
-
-    /// Joins two groups; false if they are one already.
-    pub(in crate::mesh) fn join(&mut self, a: usize, b: usize) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
-        a != b
-    }
-}

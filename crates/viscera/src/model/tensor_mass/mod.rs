@@ -12,6 +12,8 @@ mod entity;
 mod entity_loop;
 mod shape;
 mod tensors;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
