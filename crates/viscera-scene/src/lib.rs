@@ -11,9 +11,11 @@ pub mod file;
 pub mod quantity;
 mod scene;
 mod schema;
+mod summary;
 pub mod unit;
 
 pub use build::BuiltScene;
 pub use error::{Place, SceneError, SceneErrors};
 pub use scene::Scene;
 pub use schema::{schema, schema_text};
+pub use summary::{BodySummary, InstrumentSummary, SceneSummary};

@@ -6,19 +6,15 @@ use viscera::mesh::{Region, VolumeMesh};
 use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, TensorMass, TotalLagrangian};
 
 use super::curve::curve;
+use super::law::{densities, tissue};
 use super::mesh::{PlacedMesh, mesh};
 use super::region::{Wanted, region};
 use super::site::Site;
-use super::law::{densities, tissue};
 use crate::error::SceneErrors;
 use crate::file::{BodyFile, LawName, LoadFile, LoosePiecesFile, ModelFile, ModelName};
 
 /// The body, and what a person should know about its mesh.
-pub(super) fn body<T: Scalar>(
-    name: &str,
-    file: &BodyFile,
-    site: &Site,
-) -> Result<(Body<T>, Vec<String>), SceneErrors> {
+pub(super) fn body<T: Scalar>(name: &str, file: &BodyFile, site: &Site) -> Result<(Body<T>, Vec<String>), SceneErrors> {
     let placed = mesh(&file.mesh, file.place.as_ref(), site)?;
     let tissue = tissue(file, &placed, site)?;
     let densities = densities(file, &placed.mesh, site)?;

@@ -19,7 +19,8 @@ pub(super) fn read(
     let text = std::fs::read_to_string(&path).map_err(|error| {
         site.error(format!("cannot read {}: {error}", path.display()), "the path starts at the scene file's folder")
     })?;
-    parse(&text, columns).map_err(|(line, problem)| site.error(format!("{}, line {line}: {problem}", path.display()), ""))
+    parse(&text, columns)
+        .map_err(|(line, problem)| site.error(format!("{}, line {line}: {problem}", path.display()), ""))
 }
 
 /// The rows, or the line (from 1) that is wrong and what is wrong with it.

@@ -1,5 +1,6 @@
 use viscera::material::{
-    Fibre, Lame, LawFamily, LawKind, LinearElastic, MaterialError, StVenantKirchhoff, Tissue, TransverseLinear, TransverseStVenantKirchhoff,
+    Fibre, Lame, LawFamily, LawKind, LinearElastic, MaterialError, StVenantKirchhoff, Tissue, TransverseLinear,
+    TransverseStVenantKirchhoff,
 };
 use viscera::math::Vec3;
 use viscera::mesh::{Point, VolumeMesh};
@@ -126,7 +127,10 @@ fn along(points: &[[Length; 3]], mesh: &VolumeMesh, site: &Site) -> Result<Vec<P
             let share = ((centre - pair[0]).dot(along) / along.squared_norm()).clamp(0.0, 1.0);
             (centre - (pair[0] + along * share)).squared_norm()
         };
-        points.windows(2).min_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(Vec3::ZERO, |pair| pair[1] - pair[0])
+        points
+            .windows(2)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .map_or(Vec3::ZERO, |pair| pair[1] - pair[0])
     };
     let centre = |cell: usize| {
         let corners = mesh.cell(cell);

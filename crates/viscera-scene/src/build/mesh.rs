@@ -37,7 +37,8 @@ pub(super) fn mesh(file: &MeshFile, place: Option<&PlaceFile>, body: &Site) -> R
 
 fn read_volume(file: &VolumeFile, site: &Site, notices: &mut Vec<String>) -> Result<VolumeMesh, SceneErrors> {
     let scale = file.unit.in_metres() * file.scale;
-    let read = viscera_io::read_volume(site.path(&file.file), scale).map_err(|error| site.key("file").error(error, ""))?;
+    let read =
+        viscera_io::read_volume(site.path(&file.file), scale).map_err(|error| site.key("file").error(error, ""))?;
     notices.extend(read.notices.iter().map(ToString::to_string));
     notices.push(read.report.to_string());
     Ok(read.mesh)
@@ -45,8 +46,8 @@ fn read_volume(file: &VolumeFile, site: &Site, notices: &mut Vec<String>) -> Res
 
 fn fill_surface(file: &SurfaceFile, site: &Site, notices: &mut Vec<String>) -> Result<VolumeMesh, SceneErrors> {
     let scale = file.unit.in_metres() * file.scale;
-    let read = viscera_io::read_mesh(site.path(&file.surface), scale)
-        .map_err(|error| site.key("surface").error(error, ""))?;
+    let read =
+        viscera_io::read_mesh(site.path(&file.surface), scale).map_err(|error| site.key("surface").error(error, ""))?;
     let viscera_io::ImportedMesh::Surface(surface) = read.mesh else {
         let advice = "name it with `file` instead, or give a file of triangles (STL, OBJ)";
         return Err(site.key("surface").error("the file holds a volume mesh already", advice));
@@ -115,7 +116,7 @@ fn allow(cells: f64, site: &Site) -> Result<(), SceneErrors> {
 
 /// The turn of a place, by Rodrigues' formula R = cos θ I + sin θ [a]× + (1 − cos θ) a aᵀ.
 fn turn(place: Option<&PlaceFile>, site: &Site) -> Result<Mat3<f64>, SceneErrors> {
-    let Some(rotate) = place.and_then(|place| place.rotate.as_ref()) else { return Ok(Mat3::identity_like(0.0)) };
+    let Some(rotate) = place.and_then(|place| place.rotate.as_ref()) else { return Ok(Mat3::IDENTITY) };
     let Some(axis) = Vec3::from(rotate.axis).normalized() else {
         let message = "the axis has no direction";
         return Err(site.key("rotate").key("axis").error(message, "give any vector that is not zero"));

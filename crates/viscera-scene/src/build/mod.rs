@@ -32,6 +32,15 @@ pub struct BuiltScene<T: Scalar> {
     pub notices: Vec<(String, String)>,
 }
 
+impl<T: Scalar> BuiltScene<T> {
+    /// Steps of the world that the scene's duration takes.
+    pub fn steps(&self) -> u64 {
+        // A duration of whole steps is one, though 4 s / 5 ms is not 800 in every last bit.
+        let steps = self.file.duration.0 / self.file.step.0;
+        (steps - 1e-9 * steps).ceil().max(1.0) as u64
+    }
+}
+
 impl Scene {
     /// Builds the world: reads meshes and curves, finds regions, assembles models. `T` is the precision, `f32` or `f64`;
     /// [`SceneFile::precision`] tells which one the scene asks for.

@@ -14,12 +14,7 @@ pub(super) enum Wanted {
 }
 
 /// The region, which selects something in the mesh: one that does not is shown in its line, with what is near.
-pub(super) fn region(
-    file: &RegionFile,
-    wanted: Wanted,
-    mesh: &VolumeMesh,
-    site: &Site,
-) -> Result<Region, SceneErrors> {
+pub(super) fn region(file: &RegionFile, wanted: Wanted, mesh: &VolumeMesh, site: &Site) -> Result<Region, SceneErrors> {
     let region = plain(file, mesh, site)?;
     let selected: Result<usize, RegionError> = match wanted {
         Wanted::Nodes => region.nodes(mesh).map(|nodes| nodes.len()),
