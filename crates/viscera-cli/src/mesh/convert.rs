@@ -12,7 +12,7 @@ use crate::terminal::{complain, say};
 
 pub(super) fn convert(source: &MeshSource, out: &Path) -> Result<(), Failure> {
     require_known_ending(out)?;
-    let mut volume = |mesh: VolumeMesh| {
+    let volume = |mesh: VolumeMesh| {
         let (mesh, report) = source.checked(mesh)?;
         report.remarks().iter().for_each(|remark| complain(remark));
         write_volume(out, &mesh)
