@@ -46,7 +46,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), Failure> {
     }
 }
 
-fn play<T: Scalar>(arguments: &RunArguments, open: &OpenScene, interrupt: &Interrupt) -> Result<(), Failure> {
+fn play<T: viscera::model::Precision>(
+    arguments: &RunArguments,
+    open: &OpenScene,
+    interrupt: &Interrupt,
+) -> Result<(), Failure> {
     let mut built = open.scene.build::<T>().map_err(Failure::scene)?;
     let path = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(&open.name));
     let folder = Folder::prepare(&path)?;

@@ -1,7 +1,7 @@
 use viscera::body::{Body, BodyError, Load, LoosePieces};
 use viscera::curve::Curve;
 use viscera::material::Tissue;
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
 use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, TensorMass, TotalLagrangian};
 
@@ -14,12 +14,12 @@ use crate::error::SceneErrors;
 use crate::file::{BodyFile, LawName, LoadFile, LoosePiecesFile, ModelFile, ModelName};
 
 /// The body, and what a person should know about its mesh.
-pub(super) fn body<T: Scalar>(name: &str, file: &BodyFile, site: &Site) -> Result<(Body<T>, Vec<String>), SceneErrors> {
+pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Vec<String>), SceneErrors> {
     let placed = mesh(&file.mesh, file.place.as_ref(), site)?;
     let tissue = tissue(file, &placed, site)?;
     let densities = densities(file, &placed.mesh, site)?;
     let PlacedMesh { mesh, notices, .. } = placed;
-    let recipe = recipe::<T>(file, tissue, &mesh, site)?;
+    let recipe = recipe(file, tissue, &mesh, site)?;
 
     let mut body = Body::new(mesh.clone(), file.density.0)
         .name(name)
@@ -48,12 +48,12 @@ pub(super) fn body<T: Scalar>(name: &str, file: &BodyFile, site: &Site) -> Resul
 }
 
 /// The force model: the one that is named, or the tensor-mass model of the law, or on hexahedra the one that works there.
-fn recipe<T: Scalar>(
+fn recipe(
     file: &BodyFile,
     tissue: Tissue,
     mesh: &VolumeMesh,
     site: &Site,
-) -> Result<Box<dyn ModelRecipe<T>>, SceneErrors> {
+) -> Result<Box<dyn ModelRecipe>, SceneErrors> {
     let kind = match (&file.model, mesh, file.law.kind) {
         (Some(model), ..) => model.kind,
         (None, VolumeMesh::Hex(_), _) => ModelName::TotalLagrangian,

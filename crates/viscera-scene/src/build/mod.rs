@@ -11,6 +11,7 @@ mod site;
 
 use indexmap::IndexMap;
 use viscera::math::Scalar;
+use viscera::model::Precision;
 use viscera::world::{BodyId, InstrumentId, Substep, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
@@ -48,7 +49,7 @@ impl Scene {
     /// # Errors
     /// All that [`check`](Self::check) finds; and the first file that cannot be read, region that selects nothing, law
     /// that the model does not compute, or substep that is too long.
-    pub fn build<T: Scalar>(&self) -> Result<BuiltScene<T>, SceneErrors> {
+    pub fn build<T: Precision>(&self) -> Result<BuiltScene<T>, SceneErrors> {
         let file = self.check()?;
         let root = Site::root(self);
         let config = WorldConfig {

@@ -60,7 +60,7 @@ impl TensorMass {
     }
 }
 
-impl<T: Scalar> ModelRecipe<T> for TensorMass {
+impl ModelRecipe for TensorMass {
     fn kind(&self) -> ModelKind {
         ModelKind::TensorMass
     }
@@ -69,7 +69,17 @@ impl<T: Scalar> ModelRecipe<T> for TensorMass {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl TensorMass {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::TensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
         if !LAWS.contains(&self.tissue.kind()) {
