@@ -1,10 +1,11 @@
-//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
+//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; `registry.rs` is the only list of them.
 
 mod block_sink;
 mod block_table;
 mod error;
 pub mod frequency;
 pub mod linear_tensor_mass;
+mod precision;
 mod registry;
 pub mod tensor_mass;
 mod tet_loop;
@@ -14,6 +15,7 @@ pub mod volume_penalty;
 pub use block_sink::BlockSink;
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
+pub use precision::Precision;
 pub use registry::{ModelInfo, ModelKind};
 pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
@@ -111,16 +113,22 @@ fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
 }
 
 /// What is needed to build a model for a mesh: what the user writes.
-pub trait ModelRecipe<T: Scalar>: std::fmt::Debug + Send + Sync {
+pub trait ModelRecipe: std::fmt::Debug + Send + Sync {
     /// The kind of model.
     fn kind(&self) -> ModelKind;
 
     /// The tissue that it is made of.
     fn tissue(&self) -> &Tissue;
 
-    /// Builds the model.
+    /// Builds the model in single precision.
     ///
     /// # Errors
     /// [`ModelError`] where the model supports neither the law nor the cells, or a cell has no volume.
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError>;
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError>;
+
+    /// Builds the model in double precision.
+    ///
+    /// # Errors
+    /// As [`ModelRecipe::build_single`].
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError>;
 }
