@@ -11,7 +11,7 @@ pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
 pub(crate) use state::MotionBackup;
-pub use state::{BodyState, NodeMotion};
+pub use state::{BodyState, NodeMotion, PastState};
 
 use crate::curve::Curve;
 use crate::math::Vec3;
@@ -48,6 +48,7 @@ pub struct Body {
     pub(crate) model: Option<Box<dyn ModelRecipe>>,
     pub(crate) keep_volume: f64,
     pub(crate) damping: f64,
+    pub(crate) stiffness_damping: f64,
     pub(crate) fixed: Vec<Region>,
     pub(crate) prescribed: Vec<(Region, Curve<Vec3<f64>>)>,
     pub(crate) loads: Vec<Load>,
@@ -74,6 +75,7 @@ impl Body {
             model: None,
             keep_volume: 0.0,
             damping: 0.0,
+            stiffness_damping: 0.0,
             fixed: Vec::new(),
             prescribed: Vec::new(),
             loads: Vec::new(),
@@ -114,6 +116,13 @@ impl Body {
     /// Damping rate [1/s, ≥ 0]: γ_i = rate · m_i; 0, the default, is none.
     pub fn damping(mut self, rate: f64) -> Self {
         self.damping = rate;
+        self
+    }
+
+    /// Damping of the tissue's stiffness [s, ≥ 0]: α of Rayleigh's C = α K + β M, whose β is [`Body::damping`]. It damps a vibration
+    /// of frequency ω at the ratio αω/2. 0, the default, is none. Implicit steps only.
+    pub fn stiffness_damping(mut self, time: f64) -> Self {
+        self.stiffness_damping = time;
         self
     }
 

@@ -1,5 +1,6 @@
-use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion};
+use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
+use crate::dynamics::implicit::{Implicit, ImplicitMemory};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
@@ -19,6 +20,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) law: &'static str,
     /// Damping rate γ_i/m_i [1/s].
     pub(crate) damping: T,
+    /// α of Rayleigh's damping [s].
+    pub(crate) stiffness_damping: T,
     pub(crate) rest: Vec<Vec3<T>>,
     pub(crate) prescribed: Vec<Curve<Vec3<f64>>>,
     pub(crate) loads: NodalLoads<T>,
@@ -31,6 +34,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) external_forces: Vec<Vec3<T>>,
     pub(crate) scratch: Scratch<T>,
     pub(crate) backup: MotionBackup<T>,
+    pub(crate) implicit: ImplicitMemory<T>,
     pub(crate) pieces: Vec<u32>,
 }
 
@@ -54,9 +58,23 @@ impl<T: Scalar> SimulatedBody<T> {
     where
         T: Precision,
     {
-        let Body { name, mesh, density, model, keep_volume, damping, fixed, prescribed, loads, loose_pieces } = body;
+        let Body {
+            name,
+            mesh,
+            density,
+            model,
+            keep_volume,
+            damping,
+            stiffness_damping,
+            fixed,
+            prescribed,
+            loads,
+            loose_pieces,
+        } = body;
         let body = || name.clone();
         check_range(&name, "damping", damping, damping >= 0.0, "zero or positive [1/s]")?;
+        let good = stiffness_damping >= 0.0;
+        check_range(&name, "stiffness damping", stiffness_damping, good, "zero or positive [s]")?;
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
@@ -95,6 +113,8 @@ impl<T: Scalar> SimulatedBody<T> {
             model: recipe.kind(),
             law: recipe.tissue().kind().name(),
             damping: T::from_f64(damping),
+            stiffness_damping: T::from_f64(stiffness_damping),
+            implicit: ImplicitMemory::none(),
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
@@ -156,6 +176,17 @@ impl<T: Scalar> SimulatedBody<T> {
                 self.state.velocities[node] = velocity(self.state.positions[node].cast()).cast();
             }
         }
+        self.state.past.is_known = false;
+    }
+
+    /// Residuals of the last linear solve of implicit steps, over its scale: at the start and after each iteration.
+    pub fn linear_history(&self) -> &[f64] {
+        self.implicit.linear_history()
+    }
+
+    /// Residuals of Newton's iterations in the last implicit step, over the forces that balance: at the start and after each.
+    pub fn newton_history(&self) -> &[f64] {
+        self.implicit.newton_history()
     }
 
     /// Sets the positions of the free nodes [m], for a body that starts deformed.
@@ -165,6 +196,7 @@ impl<T: Scalar> SimulatedBody<T> {
                 self.state.positions[node] = position(self.state.positions[node].cast()).cast();
             }
         }
+        self.state.past.is_known = false;
         self.state.positions_changed();
     }
 
@@ -176,6 +208,14 @@ impl<T: Scalar> SimulatedBody<T> {
     /// The current surface, cut faces included.
     pub fn surface(&self) -> Vec<SurfaceTriangle> {
         self.boundary.surface(&self.state.removed)
+    }
+
+    /// Asks for the memory of implicit steps.
+    pub(crate) fn prepare_implicit(&mut self, settings: &Implicit) {
+        self.implicit = ImplicitMemory::new(&self.mesh, settings);
+        if settings.scheme.needs_past() {
+            self.state.past.reserve(self.state.positions.len());
+        }
     }
 
     /// Brings the internal forces up to date with positions and cells.
@@ -277,6 +317,7 @@ fn initial_state<T: Scalar>(
         models,
         forces_are_current: false,
         squared_frequency: None,
+        past: PastState::default(),
     })
 }
 

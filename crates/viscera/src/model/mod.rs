@@ -47,6 +47,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>);
 
+    /// Forces for the energy–momentum step, where the model has them.
+    fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
+        None
+    }
+
     /// Stored energy W(x) [J].
     fn energy(&self, x: &[Vec3<T>]) -> f64;
 
@@ -64,6 +69,13 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// A copy, for snapshots: a cut changes the model.
     fn clone_box(&self) -> Box<dyn ForceModel<T>>;
+}
+
+/// Forces between two places that account for the energy between them.
+pub trait MeanForces<T> {
+    /// Adds the forces F [N] with (to − from)·F = W(to) − W(from) to `out`; they have neither net force nor torque about the
+    /// places in the middle.
+    fn add_mean_forces(&self, from: &[Vec3<T>], to: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 }
 
 /// Memory that models use while they compute and that means nothing between calls: nodal arrays, four numbers to a node,

@@ -28,6 +28,13 @@ pub(crate) trait TetKernel: TetConstants {
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R>;
+    /// Whether [`TetKernel::mean_forces`] keeps energy.
+    const KEEPS_ENERGY: bool = false;
+    /// Forces between the edge matrices `from` and `to`; those in the middle, unless the kernel knows better.
+    #[inline(always)]
+    fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
+        Self::forces(constants, &((*from + *to) * from.columns[0].x.like(0.5)))
+    }
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
 }
@@ -173,6 +180,29 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
             let constants = load_constants::<T, S, K>(simd, constants);
             let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
             scatter_forces(simd, K::product(&constants[..K::CONSTANTS], &d, &dd), nodes, out);
+        }
+    }
+
+    pub(crate) fn add_mean_forces(
+        &self,
+        from: &[Vec3<T>],
+        to: &[Vec3<T>],
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) {
+        scratch.start(from);
+        scratch.start_direction(to);
+        let Scratch { nodal, direction, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_mean_forces_with(simd, nodal, direction, forces));
+        scratch.finish(out);
+    }
+
+    #[inline(always)]
+    fn add_mean_forces_with<S: Simd>(&self, simd: S, from: &[[T; 4]], to: &[[T; 4]], out: &mut [[T; 4]]) {
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let (from, to) = (gather_edges(simd, from, nodes), gather_edges(simd, to, nodes));
+            scatter_forces(simd, K::mean_forces(&constants[..K::CONSTANTS], &from, &to), nodes, out);
         }
     }
 

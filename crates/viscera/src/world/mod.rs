@@ -5,8 +5,9 @@ mod error;
 mod observables;
 mod snapshot;
 mod step;
+mod step_implicit;
 
-pub use config::{Substep, WorldConfig};
+pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
 pub use observables::{BodyObservables, InstrumentObservables};
 pub use snapshot::Snapshot;
@@ -59,13 +60,17 @@ impl<T: Scalar> World<T> {
     ///
     /// # Errors
     /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
-    /// at the fixed sub-step that was asked for, with the number that would do.
+    /// at the fixed sub-step that was asked for, with the number that would do; [`WorldError::NoMeanForces`] and
+    /// [`WorldError::StiffnessDampingNeedsImplicit`] where it does not fit the integrator.
     pub fn add(&mut self, body: Body) -> Result<BodyId, WorldError>
     where
         T: Precision,
     {
-        let body = SimulatedBody::new(body)?;
-        self.check_substep(&body)?;
+        let mut body = SimulatedBody::new(body)?;
+        self.check_integrator(&body)?;
+        if let Integrator::Implicit(settings) = self.config.integrator {
+            body.prepare_implicit(&settings);
+        }
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
         self.bodies.push(body);

@@ -1,8 +1,9 @@
 //! One step of a world.
 
-use super::{StepError, Substep, World};
+use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
-use crate::dynamics::explicit::{self, Drive};
+use crate::dynamics::implicit::ImplicitReport;
+use crate::dynamics::{Drive, explicit};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 
@@ -16,12 +17,22 @@ const MAX_RETRIES: u32 = 5;
 pub struct StepReport {
     /// Time at the end [s].
     pub time: f64,
-    /// Sub-steps taken.
+    /// Sub-steps taken; 1 for an implicit step.
     pub substeps: u32,
     /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,
+    /// What the solver did, in an implicit step.
+    pub implicit: Option<ImplicitReport>,
+}
+
+/// What moving the bodies over a step took.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) substeps: u32,
+    pub(super) retries: u32,
+    pub(super) implicit: Option<ImplicitReport>,
 }
 
 impl<T: Scalar> World<T> {
@@ -32,10 +43,10 @@ impl<T: Scalar> World<T> {
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
         self.keep();
-        let (substeps, retries) = self.move_bodies(&span).inspect_err(|_| self.undo())?;
+        let Motion { substeps, retries, implicit } = self.move_bodies(&span).inspect_err(|_| self.undo())?;
         let removed_cells = self.cut(&span);
         self.steps += 1;
-        Ok(StepReport { time: span.to, substeps, retries, removed_cells })
+        Ok(StepReport { time: span.to, substeps, retries, removed_cells, implicit })
     }
 
     /// Remembers where everything is.
@@ -46,23 +57,31 @@ impl<T: Scalar> World<T> {
     }
 
     /// Puts everything back to where it was.
-    fn undo(&mut self) {
+    pub(super) fn undo(&mut self) {
         for body in &mut self.bodies {
             body.backup.put_back(&mut body.state);
         }
         self.move_tips(self.time());
     }
 
-    /// Moves the bodies over the step with as many sub-steps as it takes; gives these, and how often it was tried again.
-    fn move_bodies(&mut self, span: &Span) -> Result<(u32, u32), StepError> {
+    /// Moves the bodies over the step.
+    fn move_bodies(&mut self, span: &Span) -> Result<Motion, StepError> {
+        match self.config.integrator {
+            Integrator::Explicit(substep) => self.move_explicitly(span, substep),
+            Integrator::Implicit(settings) => self.move_implicitly(span, &settings),
+        }
+    }
+
+    /// Moves the bodies with as many sub-steps as it takes.
+    fn move_explicitly(&mut self, span: &Span, substep: Substep) -> Result<Motion, StepError> {
         let mut frequency = self.squared_frequency();
         for retries in 0..=MAX_RETRIES {
-            let substeps = self.plan_substeps(frequency)?;
+            let substeps = self.plan_substeps(substep, frequency)?;
             self.grip(span);
             self.advance(span, substeps);
             let finite = self.bodies.iter().all(|body| body.state.is_finite());
             if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(self.squared_frequency()) {
-                return Ok((substeps, retries));
+                return Ok(Motion { substeps, retries, implicit: None });
             }
             // The tissue stiffened on the way: once more, for the stiffness at its end, or else for twice as many steps.
             frequency = if finite { frequency.max(self.squared_frequency()) } else { 4.0 * frequency };
@@ -76,9 +95,9 @@ impl<T: Scalar> World<T> {
         self.bodies.iter_mut().map(SimulatedBody::squared_frequency).fold(0.0, f64::max)
     }
 
-    fn plan_substeps(&mut self, squared_frequency: f64) -> Result<u32, StepError> {
+    fn plan_substeps(&mut self, substep: Substep, squared_frequency: f64) -> Result<u32, StepError> {
         let step = self.config.step;
-        let needed = match self.config.substep {
+        let needed = match substep {
             Substep::Automatic => explicit::substeps_for(step, squared_frequency),
             Substep::Fixed(substep) => {
                 let stable = explicit::stable_step(squared_frequency);
@@ -98,7 +117,7 @@ impl<T: Scalar> World<T> {
     }
 
     /// Lets instruments take hold or let go.
-    fn grip(&mut self, span: &Span) {
+    pub(super) fn grip(&mut self, span: &Span) {
         for (number, instrument) in self.instruments.iter().enumerate() {
             instrument.grip(number as u32, span, &mut self.bodies);
         }
@@ -144,7 +163,7 @@ impl<T: Scalar> World<T> {
         removed
     }
 
-    fn diverged(&self) -> StepError {
+    pub(super) fn diverged(&self) -> StepError {
         let (body, cell, stretch) = self.most_deformed();
         let advice = if body.law.contains("st-venant-kirchhoff") {
             "This law loses its strength under strong compression: pull or press less, stiffen the tissue, or keep its \

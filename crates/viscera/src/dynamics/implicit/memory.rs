@@ -1,0 +1,82 @@
+use super::{Implicit, MatrixForm};
+use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter};
+
+/// What an implicit step computes in; it means nothing between steps.
+#[derive(Clone, Debug)]
+pub(crate) struct ImplicitMemory<T> {
+    /// Places at the beginning of the step [m].
+    pub(super) start: Vec<Vec3<T>>,
+    /// Velocities at the beginning of the step [m/s].
+    pub(super) velocities: Vec<Vec3<T>>,
+    /// δ, the displacement over the step as far as it is known [m].
+    pub(super) increment: Vec<Vec3<T>>,
+    /// δ̂ without forces; for driven nodes, where they have to go [m].
+    pub(super) coast: Vec<Vec3<T>>,
+    /// v̂ without forces [m/s].
+    pub(super) coast_velocities: Vec<Vec3<T>>,
+    /// What the forces lack to balance, R − F − C v − M a [N].
+    pub(super) lack: Vec<Vec3<T>>,
+    /// Correction of δ in one iteration [m].
+    pub(super) correction: Vec<Vec3<T>>,
+    /// What driven nodes still have to go [m].
+    pub(super) prescribed: Vec<Vec3<T>>,
+    /// Memory for a nodal array: velocities that damp, places at the end.
+    pub(super) nodal: Vec<Vec3<T>>,
+    /// Memory for forces of damping [N].
+    pub(super) damping: Vec<Vec3<T>>,
+    /// The masses' part of the matrix [kg/s²].
+    pub(super) masses: Vec<T>,
+    pub(super) filters: Vec<Filter<T>>,
+    pub(super) preconditioner: BlockJacobi<T>,
+    pub(super) matrix: Option<BlockMatrix<T>>,
+    pub(super) conjugate_gradient: ConjugateGradient<T>,
+    /// Residuals of Newton's iterations over the forces that balance.
+    pub(super) history: Vec<f64>,
+}
+
+impl<T: Scalar> ImplicitMemory<T> {
+    /// Memory of no size: a body that moves explicitly.
+    pub(crate) fn none() -> Self {
+        Self::of_size(0, 0, 0, None)
+    }
+
+    /// Memory for a body of `mesh`.
+    pub(crate) fn new(mesh: &VolumeMesh, settings: &Implicit) -> Self {
+        let matrix = (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh));
+        Self::of_size(mesh.nodes().len(), settings.linear.at_most(), settings.newton.at_most(), matrix)
+    }
+
+    fn of_size(nodes: usize, linear: u32, newton: u32, matrix: Option<BlockMatrix<T>>) -> Self {
+        let zeros = || vec![Vec3::ZERO; nodes];
+        Self {
+            start: zeros(),
+            velocities: zeros(),
+            increment: zeros(),
+            coast: zeros(),
+            coast_velocities: zeros(),
+            lack: zeros(),
+            correction: zeros(),
+            prescribed: zeros(),
+            nodal: zeros(),
+            damping: zeros(),
+            masses: vec![T::ZERO; nodes],
+            filters: vec![Filter::Free; nodes],
+            preconditioner: BlockJacobi::new(nodes),
+            matrix,
+            conjugate_gradient: ConjugateGradient::new(nodes, linear),
+            history: Vec::with_capacity(newton as usize + 1),
+        }
+    }
+
+    /// Residuals of the last linear solve.
+    pub(crate) fn linear_history(&self) -> &[f64] {
+        self.conjugate_gradient.history()
+    }
+
+    /// Residuals of the iterations of the last step.
+    pub(crate) fn newton_history(&self) -> &[f64] {
+        &self.history
+    }
+}
