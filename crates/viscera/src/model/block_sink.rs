@@ -27,11 +27,23 @@ pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
                 component.store(stored);
             }
         }
-        for lane in 0..elements.min(T::LANES) {
-            let [a, b, c] = numbers.map(|column| Vec3::from(column.map(|component| component[lane])));
-            let node = |corner: usize| nodes[corner * T::LANES + lane];
-            sink.add(node(p), node(corner), Mat3::from_columns(a, b, c));
-        }
+        let of_corner = |corner: usize| &nodes[corner * T::LANES..(corner + 1) * T::LANES];
+        send(&numbers, of_corner(p), of_corner(corner), elements.min(T::LANES), sink);
+    }
+}
+
+/// Gives one block of each of the first `elements` lanes to `sink`. Not inlined: the same for every instruction set.
+#[inline(never)]
+fn send<T: Scalar>(
+    numbers: &[[[T; MAX_LANES]; 3]; 3],
+    rows: &[u32],
+    columns: &[u32],
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    for lane in 0..elements {
+        let [a, b, c] = numbers.map(|column| Vec3::from(column.map(|component| component[lane])));
+        sink.add(rows[lane], columns[lane], Mat3::from_columns(a, b, c));
     }
 }
 

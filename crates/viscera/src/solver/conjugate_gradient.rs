@@ -69,7 +69,7 @@ pub struct SolveReport {
 }
 
 /// Memory for solves of one size. Nothing is allocated later.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,
@@ -121,7 +121,7 @@ impl<T: Scalar> ConjugateGradient<T> {
         self.note(rho, scale);
         let mut ending = Ending::Exhausted;
         let mut iterations = 0;
-        let at_most = stop.at_most().min(self.history.capacity() as u32 - 1);
+        let at_most = stop.at_most().min((self.history.capacity() as u32).saturating_sub(1));
         while iterations < at_most {
             if rho.sqrt() <= goal || rho <= 0.0 {
                 ending = Ending::Converged;

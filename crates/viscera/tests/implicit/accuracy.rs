@@ -31,9 +31,7 @@ fn errors_fall_with_the_order_of_the_scheme() {
         let error = |steps| distance(&shape_after(Integrator::Implicit(settings), steps), &reference);
         let (coarse, fine) = (error(40), error(80));
         let found = (coarse / fine).log2();
-        println!("{:?}: {coarse:e} {fine:e} order {found}", settings.scheme);
-        // Not asymptotic yet: an order is told from its neighbours by less than a half.
-        assert!((found - order).abs() < 0.3, "{:?}: {coarse:e}, {fine:e}: order {found}, not {order}", settings.scheme);
+        assert!((found - order).abs() < 0.1, "{:?}: {coarse:e}, {fine:e}: order {found}, not {order}", settings.scheme);
     }
 }
 
@@ -43,5 +41,5 @@ fn the_linearised_step_is_of_first_order() {
     let reference = shape_after(Integrator::Explicit(Substep::Automatic), 4000);
     let error = |steps| distance(&shape_after(Integrator::Implicit(linearised()), steps), &reference);
     let found = (error(40) / error(80)).log2();
-    assert!((found - 1.0).abs() < 0.3, "order {found}");
+    assert!((found - 1.0).abs() < 0.1, "order {found}");
 }

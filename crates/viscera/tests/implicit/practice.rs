@@ -9,13 +9,13 @@ use viscera::world::{Integrator, StepError, Substep, World, WorldConfig, WorldEr
 
 use super::support::*;
 
-/// Tissue of 10 MPa bears steps of 10 ms, a hundred times the explicit limit, in single precision, and comes to rest.
+/// Tissue of 10 MPa bears steps of 10 ms, twenty times the explicit limit, in single precision, and comes to rest.
 #[test]
 fn stiff_tissue_bears_long_steps() {
     let body = bar_of(TotalLagrangian::new(stiff_tissue(10e6))).fix(root());
     let settings = Implicit::default();
     let (mut world, id) = world::<f32>([0.0, -9.81, 0.0], 1e-2, Integrator::Implicit(settings), body);
-    assert!(world.body(id).stable_step() < 1e-4);
+    assert!(world.body(id).stable_step() < 1e-2 / 20.0);
     run(&mut world, 200);
     let seen = world.observe(id);
     assert!(seen.kinetic_energy < 1e-6 * seen.elastic_energy, "{seen:?}");
@@ -38,10 +38,12 @@ fn the_static_limit_carries_the_weight() {
 #[test]
 fn driven_nodes_arrive() {
     for settings in [linearised(), full(Scheme::BackwardEuler, 1e-9), full(Scheme::EnergyMomentum, 1e-9)] {
-        let pull = Curve::new(vec![(0.0, Vector::ZERO), (0.1, Vector::new(0.02, 0.0, 0.03))]).unwrap();
+        let pull = Curve::piecewise_linear(vec![(0.0, Vector::ZERO), (0.1, Vector::new(0.02, 0.0, 0.03))]).unwrap();
         let body = bar().fix(root()).prescribe(tip(), pull);
         let (mut world, id) = implicit_world(NO_GRAVITY, 1e-2, settings, body);
-        let path = Curve::new(vec![(0.0, Vector::new(0.1, 0.05, 0.15)), (0.1, Vector::new(0.12, 0.05, 0.15))]).unwrap();
+        let path =
+            Curve::piecewise_linear(vec![(0.0, Vector::new(0.1, 0.05, 0.15)), (0.1, Vector::new(0.12, 0.05, 0.15))])
+                .unwrap();
         let grasper = world.add_instrument(Grasper { path, radius: 0.03, close: 0.02, open: None }).unwrap();
         run(&mut world, 10);
         let body = world.body(id);
@@ -107,18 +109,20 @@ fn a_full_step_that_does_not_converge_is_undone() {
     assert_eq!(world.time(), 0.0);
 }
 
-/// Compressed beyond the strength of its law the tangent is indefinite: the step says so and stays finite.
+/// Compressed beyond the strength of its law the tangent is indefinite: the step says so, and gains no energy.
 #[test]
 fn negative_curvature_is_survived_and_reported() {
     let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, Implicit::default(), bar().fix(root()));
     world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 0.45 * x.z));
+    let before = world.observe(id);
     let mut met = false;
     for _ in 0..50 {
         met |= world.step().unwrap().implicit.unwrap().negative_curvature;
     }
     assert!(met);
     let seen = world.observe(id);
-    assert!(seen.max_displacement < 0.3, "{seen:?}");
+    let energy = seen.kinetic_energy + seen.elastic_energy;
+    assert!(energy < before.elastic_energy, "{energy} J, from {} J", before.elastic_energy);
 }
 
 /// Settings and bodies that do not fit are refused with a reason.

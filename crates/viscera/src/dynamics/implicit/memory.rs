@@ -4,7 +4,7 @@ use crate::mesh::VolumeMesh;
 use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter};
 
 /// What an implicit step computes in; it means nothing between steps.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct ImplicitMemory<T> {
     /// Places at the beginning of the step [m].
     pub(super) start: Vec<Vec3<T>>,
@@ -39,16 +39,12 @@ pub(crate) struct ImplicitMemory<T> {
 impl<T: Scalar> ImplicitMemory<T> {
     /// Memory of no size: a body that moves explicitly.
     pub(crate) fn none() -> Self {
-        Self::of_size(0, 0, 0, None)
+        Self::default()
     }
 
     /// Memory for a body of `mesh`.
     pub(crate) fn new(mesh: &VolumeMesh, settings: &Implicit) -> Self {
-        let matrix = (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh));
-        Self::of_size(mesh.nodes().len(), settings.linear.at_most(), settings.newton.at_most(), matrix)
-    }
-
-    fn of_size(nodes: usize, linear: u32, newton: u32, matrix: Option<BlockMatrix<T>>) -> Self {
+        let nodes = mesh.nodes().len();
         let zeros = || vec![Vec3::ZERO; nodes];
         Self {
             start: zeros(),
@@ -64,9 +60,9 @@ impl<T: Scalar> ImplicitMemory<T> {
             masses: vec![T::ZERO; nodes],
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
-            matrix,
-            conjugate_gradient: ConjugateGradient::new(nodes, linear),
-            history: Vec::with_capacity(newton as usize + 1),
+            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh)),
+            conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
         }
     }
 
