@@ -48,7 +48,7 @@ fn table(head: &[&str]) -> Table {
 fn bodies(bodies: &[BodyResult]) -> String {
     let cut = bodies.iter().any(|body| body.removed_cells > 0);
     let inverted = bodies.iter().any(|body| body.inverted_cells > 0);
-    let adaptive = bodies.iter().any(|body| (1..body.nodes).contains(&body.nonlinear_nodes));
+    let adaptive = bodies.iter().any(|body| (1..body.nodes_left).contains(&body.nonlinear_nodes));
     let mut head = vec!["body", "cells"];
     head.extend(cut.then_some("removed"));
     head.extend(inverted.then_some("inverted"));
@@ -59,7 +59,7 @@ fn bodies(bodies: &[BodyResult]) -> String {
         let mut row = vec![body.name.clone(), grouped(body.cells - body.removed_cells)];
         row.extend(cut.then(|| grouped(body.removed_cells)));
         row.extend(inverted.then(|| grouped(body.inverted_cells)));
-        row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes))));
+        row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes_left))));
         row.extend([
             format!("{:.1} cm³", body.volume * 1e6),
             percent(body.volume_variation),

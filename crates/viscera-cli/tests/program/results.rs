@@ -63,7 +63,7 @@ fn bent_cylinders_keep_their_volume_as_the_report_tabulates() {
     let desk = Desk::new();
     let mut arguments = vec!["run".to_owned(), "cylinder-bend".to_owned(), "--pictures=0".to_owned()];
     arguments.push("--out=bend".to_owned());
-    arguments.push("--set=output.interval=10 s".to_owned());
+    arguments.extend(["--set=output.interval=10 s", "--time=1.5 s"].map(str::to_owned));
     for law in ["linear", "non-linear", "keep-volume"] {
         for force in ["1F", "2F", "3F"] {
             arguments.push(format!("--set=body.{law}-{force}.mesh.edge=5 mm"));
@@ -156,8 +156,8 @@ fn a_second_run_replaces_the_first_and_leaves_other_files_alone() {
 #[test]
 fn a_step_that_fails_keeps_what_stands_and_says_what_to_change() {
     let desk = Desk::new();
-    let crushed =
-        format!("{CUBE}prescribe = [{{ region = \"y-min\", displacement = [[0, [0, 0, 0]], [0.1, [0, 0.3, 0]]] }}]\n");
+    let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e6 kN\", 0]]]";
+    let crushed = format!("{CUBE}load = [{{ region = \"y-min\", force = {force} }}]\n");
     desk.write("crushed.toml", crushed);
     desk.viscera(&["run", "crushed.toml"])
         .ends_with(1)
@@ -165,10 +165,7 @@ fn a_step_that_fails_keeps_what_stands_and_says_what_to_change() {
         .complains("the step is undone")
         .complains("what was computed up to");
     let summary = desk.json("out/crushed/summary.json");
-    assert!(
-        summary["failure"].as_str().expect("why").contains("near cell")
-            || summary["failure"].as_str().unwrap().contains("cell")
-    );
+    assert!(summary["failure"].as_str().expect("why").contains("near cell"));
     let time = summary["simulated_time_s"].as_f64().unwrap();
     assert!(0.0 < time && time < 0.1, "{time} s");
     assert_eq!(column(&desk.read("out/crushed/observables.csv"), "time [s]").last().copied(), Some(time));

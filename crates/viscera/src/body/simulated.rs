@@ -1,6 +1,5 @@
 use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion};
 use crate::curve::Curve;
-use crate::dynamics::explicit::stable_step;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::{FrequencyBound, frequency_bound};
