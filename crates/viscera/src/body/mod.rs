@@ -1,5 +1,6 @@
 //! Bodies: what a user describes ([`Body`]), and what a world simulates ([`SimulatedBody`]).
 
+mod deformation;
 mod error;
 mod load;
 mod simulated;

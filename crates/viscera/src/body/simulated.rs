@@ -189,7 +189,10 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Bound of ω_max² at the current positions [1/s²].
     pub(crate) fn squared_frequency(&mut self) -> f64 {
-        *self.state.squared_frequency.get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions))
+        *self
+            .state
+            .squared_frequency
+            .get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions, &mut self.scratch))
     }
 
     /// Gravity and loads at `time` on the current positions [N].

@@ -1,6 +1,5 @@
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
-use crate::dynamics::explicit;
 use crate::math::Scalar;
 
 /// Settings of a world.
@@ -52,7 +51,7 @@ impl WorldConfig {
 impl<T: Scalar> World<T> {
     /// Refuses a fixed sub-step at which the body would blow up.
     pub(super) fn check_substep(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
-        let stable = explicit::stable_step(body.frequency.squared_frequency(body.positions()));
+        let stable = body.stable_step();
         match self.config.substep {
             Substep::Fixed(substep) if substep > stable => {
                 Err(WorldError::UnstableSubstep { body: body.name().into(), substep, stable })

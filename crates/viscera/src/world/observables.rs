@@ -2,7 +2,6 @@ use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::instrument::holding_force;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::VolumeMesh;
 
 /// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
 const REST_RATIO: f64 = 1e-8;
@@ -98,16 +97,8 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Current volumes of the cells that are left, with their volumes at rest [m³].
     fn volumes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
-        let volume = move |cell: usize| match &self.mesh {
-            VolumeMesh::Tet(mesh) => {
-                let [a, b, c, d] = mesh.cells[cell].map(place);
-                (b - a).dot((c - a).cross(d - a)) / 6.0
-            }
-            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
-        };
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
-        left.map(move |cell| (volume(cell), self.cell_volumes[cell]))
+        left.map(|cell| (self.cell_volume(cell), self.cell_volumes[cell]))
     }
 
     fn observe(&self, gravity: Vec3<f64>) -> BodyObservables {
