@@ -49,8 +49,11 @@ fn volume(source: &MeshSource, mesh: VolumeMesh) -> Result<(), Failure> {
     let width = regions.iter().map(|region| region.name.chars().count()).max().unwrap_or(0);
     for region in regions {
         let counts = [(region.nodes.len(), "nodes"), (region.faces, "faces"), (region.cells.len(), "cells")];
-        let counts: Vec<_> =
-            counts.iter().filter(|(count, _)| *count > 0).map(|(count, of)| format!("{} {of}", grouped(*count))).collect();
+        let counts: Vec<_> = counts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, of)| format!("{} {of}", grouped(*count)))
+            .collect();
         say(&format!("{:<width$}  {}", region.name, counts.join(", ")));
     }
     say(&format!("\n{}", heading("quality")));

@@ -86,9 +86,10 @@ struct View {
 impl View {
     /// A view of everything that is seen at any of the moments; nothing where there is nothing to see.
     fn of(moments: &[Moment], output: &OutputFile) -> Option<Self> {
-        let bounds = moments.iter().filter_map(Moment::bounds).reduce(|(low, high), (other_low, other_high)| {
-            (low.min(other_low), high.max(other_high))
-        });
+        let bounds = moments
+            .iter()
+            .filter_map(Moment::bounds)
+            .reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)));
         let (low, high) = bounds?;
         let up = Point::from(output.camera.up).normalized()?;
         let look = Point::from(output.camera.look).normalized()?;
@@ -114,8 +115,7 @@ impl View {
             if self.is_worth_a_ghost(skin, rest) {
                 picture = picture.body(Body::new(&rest.nodes, &rest.triangles).ghost());
             }
-            picture = picture
-                .body(Body::new(&skin.nodes, &skin.triangles).tissue().cut(&skin.cut).fixed(&skin.fixed));
+            picture = picture.body(Body::new(&skin.nodes, &skin.triangles).tissue().cut(&skin.cut).fixed(&skin.fixed));
         }
         for tool in &moment.tools {
             for solid in instrument_shape::solids(tool, self.to_hand, self.size) {

@@ -71,8 +71,10 @@ impl Frames {
 fn file_names<'a>(bodies: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for body in bodies {
-        let plain: String =
-            body.chars().map(|letter| if letter.is_alphanumeric() || "-_".contains(letter) { letter } else { '_' }).collect();
+        let plain: String = body
+            .chars()
+            .map(|letter| if letter.is_alphanumeric() || "-_".contains(letter) { letter } else { '_' })
+            .collect();
         let mut name = plain.clone();
         let mut number = 2;
         while names.contains(&name) {
@@ -84,7 +86,11 @@ fn file_names<'a>(bodies: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
 }
 
-fn write_body<T: Scalar>(body: &SimulatedBody<T>, precision: Precision, file: &std::path::Path) -> Result<(), WriteError> {
+fn write_body<T: Scalar>(
+    body: &SimulatedBody<T>,
+    precision: Precision,
+    file: &std::path::Path,
+) -> Result<(), WriteError> {
     let state = body.state();
     let rest = body.mesh().nodes();
     let positions: Vec<Point> = state.positions.iter().map(|place| place.cast()).collect();

@@ -50,10 +50,7 @@ fn body_columns(of: &BodyObservables) -> Vec<(&'static str, f64)> {
 fn instrument_columns(of: &InstrumentObservables) -> Vec<(&'static str, f64)> {
     let mut columns = vector(["tip x [m]", "tip y [m]", "tip z [m]"], of.tip).to_vec();
     columns.extend(vector(["force x [N]", "force y [N]", "force z [N]"], of.force));
-    columns.extend([
-        ("held nodes [1]", of.held_nodes as f64),
-        ("at work [1]", f64::from(u8::from(of.active))),
-    ]);
+    columns.extend([("held nodes [1]", of.held_nodes as f64), ("at work [1]", f64::from(u8::from(of.active)))]);
     columns
 }
 
@@ -67,9 +64,9 @@ impl Observables {
         let measured = measure(built);
         let names = built.bodies.keys().chain(built.instruments.keys());
         let columns = measured.columns();
-        let of_things = names.zip(&columns).flat_map(|(name, columns)| {
-            columns.iter().map(move |(column, _)| format!("{name}: {column}"))
-        });
+        let of_things = names
+            .zip(&columns)
+            .flat_map(|(name, columns)| columns.iter().map(move |(column, _)| format!("{name}: {column}")));
         let header = ["time [s]".to_owned(), "sub-steps [1]".to_owned()].into_iter().chain(of_things);
         Self {
             file: folder.file("observables.csv"),

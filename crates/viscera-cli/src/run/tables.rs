@@ -83,7 +83,8 @@ fn comparison(bodies: &[BodyResult]) -> Option<String> {
     let mut table = table(&[&[""], &columns[..]].concat());
     for row in rows {
         let of = |column: &&str| bodies.iter().find(|body| body.name == format!("{row}-{column}"));
-        let values = columns.iter().map(|column| of(column).map_or_else(String::new, |body| percent(body.volume_variation)));
+        let values =
+            columns.iter().map(|column| of(column).map_or_else(String::new, |body| percent(body.volume_variation)));
         table.add_row([row.to_owned()].into_iter().chain(values).collect::<Vec<_>>());
     }
     Some(table.trim_fmt())

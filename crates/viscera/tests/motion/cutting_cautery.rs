@@ -7,7 +7,7 @@ use viscera::world::World;
 
 use crate::support::{Vector, free_bar, in_both_precisions, side, world};
 
-const RADIUS: f64 = 3e-3; // m
+const RADIUS: f64 = 7e-3; // m
 
 /// The removed cells after a straight way of the tip through the bar, at rest, within `steps` steps of 10 ms.
 fn removed_on_a_way<T: Scalar>(from: Vector, to: Vector, steps: u32, on: (f64, f64)) -> Vec<bool> {

@@ -16,12 +16,16 @@ const LENGTH: f64 = 0.4; // m
 const WIDTH: f64 = 0.1; // m
 const AREA: f64 = WIDTH * WIDTH; // m²
 const GRAVITY: f64 = 0.5; // m/s²
+/// Kinetic over elastic energy at which a body counts as at rest, over the square of the tolerance: the critically damped
+/// mode is then off by less than the tolerance.
+const QUIET: f64 = 0.05;
 
-/// A bar of linear tissue without lateral contraction along z, held at z = 0, near critical damping of its first mode.
+/// A bar of linear tissue without lateral contraction along z, held at z = 0, critically damped in its slowest mode: that
+/// of bending, ω = 1.875² √(E w²/12ρ)/L².
 fn bar<T: Scalar>(mesh: impl Into<VolumeMesh>) -> Body<T> {
-    let first_mode = 0.5 * std::f64::consts::PI / LENGTH * (YOUNG / DENSITY).sqrt();
+    let bending = 1.875_f64.powi(2) * (YOUNG * AREA / (12.0 * DENSITY)).sqrt() / (LENGTH * LENGTH);
     let tissue = linear(YOUNG, 0.0);
-    Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue)).damping(1.8 * first_mode).fix(side("z-min"))
+    Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue)).damping(2.0 * bending).fix(side("z-min"))
 }
 
 fn hexahedra() -> HexMesh {
@@ -51,7 +55,7 @@ fn settled<T: Scalar>(gravity: [f64; 3], body: Body<T>, quiet: f64) -> (World<T>
 /// A hanging bar is longer by ρgL²/2E, exactly so at the nodes of a column of hexahedra, and what holds it carries its
 /// weight. The tolerance in double precision is that of rest.
 fn a_hanging_bar_stretches_under_its_weight<T: Scalar>(tolerance: f64) {
-    let quiet = (tolerance * tolerance).min(1e-9);
+    let quiet = QUIET * tolerance * tolerance;
     let (world, seen) = settled::<T>([0.0, 0.0, GRAVITY], bar(hexahedra()), quiet);
     let longer = DENSITY * GRAVITY * LENGTH * LENGTH / (2.0 * YOUNG);
     assert_relative(end_displacement(&world).z, longer, tolerance);
@@ -59,31 +63,33 @@ fn a_hanging_bar_stretches_under_its_weight<T: Scalar>(tolerance: f64) {
     assert_vector(seen.reaction, Vector::new(0.0, 0.0, -weight), tolerance);
     assert_relative(seen.mass, DENSITY * AREA * LENGTH, tolerance);
 }
-in_both_precisions!(a_hanging_bar_stretches_under_its_weight, f32: 1e-4, f64: 1e-8);
+in_both_precisions!(a_hanging_bar_stretches_under_its_weight, f32: 3e-4, f64: 1e-6);
 
 /// A dead traction t along z on the end: u = tL/E, and the reaction is −tA, on tetrahedra too, whose patch test it is.
 fn a_pulled_bar_stretches_by_traction_over_young<T: Scalar>(tolerance: f64) {
     let traction = Vector::new(0.0, 0.0, 300.0); // Pa
     let load = || Load::Traction { region: side("z-max"), traction: Curve::constant(traction) };
     for body in [bar(hexahedra()), bar(tetrahedra())] {
-        let (world, seen) = settled::<T>([0.0; 3], body.load(load()), (tolerance * tolerance).min(1e-9));
+        let (world, seen) = settled::<T>([0.0; 3], body.load(load()), QUIET * tolerance * tolerance);
         assert_relative(end_displacement(&world).z, traction.z * LENGTH / YOUNG, tolerance);
         assert_vector(seen.reaction, Vector::new(0.0, 0.0, -traction.z * AREA), tolerance);
     }
 }
-in_both_precisions!(a_pulled_bar_stretches_by_traction_over_young, f32: 1e-4, f64: 1e-8);
+in_both_precisions!(a_pulled_bar_stretches_by_traction_over_young, f32: 3e-4, f64: 1e-6);
 
+/// On hexahedra, four corners carry a quarter of the pressure on their side each: a column stays straight under it.
+///
 /// Pressure p on the end presses with p·A, and squeezes by pL/E: without lateral contraction the area stays A.
 fn a_pressed_bar_is_held_by_pressure_times_area<T: Scalar>(tolerance: f64) {
     let pressure = 300.0; // Pa
     let load = || Load::Pressure { region: side("z-max"), pressure: Curve::constant(pressure) };
     for body in [bar(hexahedra()), bar(tetrahedra())] {
-        let (world, seen) = settled::<T>([0.0; 3], body.load(load()), (tolerance * tolerance).min(1e-9));
+        let (world, seen) = settled::<T>([0.0; 3], body.load(load()), QUIET * tolerance * tolerance);
         assert_relative(end_displacement(&world).z, -pressure * LENGTH / YOUNG, tolerance);
         assert_vector(seen.reaction, Vector::new(0.0, 0.0, pressure * AREA), tolerance);
     }
 }
-in_both_precisions!(a_pressed_bar_is_held_by_pressure_times_area, f32: 1e-4, f64: 1e-8);
+in_both_precisions!(a_pressed_bar_is_held_by_pressure_times_area, f32: 3e-4, f64: 1e-6);
 
 /// A force is shared by the nodes of its region and arrives whole.
 #[test]
@@ -91,7 +97,7 @@ fn a_force_on_a_region_is_held_whole() {
     let total = Vector::new(0.01, -0.02, 0.3); // N
     let load = Load::Force { region: side("z-max"), total: Curve::constant(total) };
     let (_, seen) = settled::<f64>([0.0; 3], bar(tetrahedra()).load(load), 1e-16);
-    assert_vector(seen.reaction, -total, 1e-8);
+    assert_vector(seen.reaction, -total, 1e-6);
 }
 
 /// Pressure all around squeezes a free body by p/K, K = E/3(1 − 2ν), and pushes it nowhere. The area follows the

@@ -4,8 +4,8 @@ use viscera::body::{Body, Load};
 use viscera::curve::Curve;
 use viscera::math::Scalar;
 use viscera::mesh::{HexMesh, TetMesh};
-use viscera::model::{LinearTensorMass, TensorMass, TotalLagrangian};
-use viscera::world::{StepError, Substep, World, WorldConfig};
+use viscera::model::{TensorMass, TotalLagrangian};
+use viscera::world::{StepError, Substep, World, WorldConfig, WorldError};
 
 use crate::support::{DENSITY, Vector, bits, free_bar, in_both_precisions, linear, side, stvk, world};
 
@@ -15,12 +15,12 @@ fn pull(peak: f64) -> Load {
     Load::Force { region: side("z-max"), total: Curve::piecewise_linear(points).unwrap() }
 }
 
-fn bodies<T: Scalar>() -> [Body<T>; 4] {
+/// Only laws whose force grows faster than the displacement: linear tissue bears any load, if by stretching absurdly.
+fn bodies<T: Scalar>() -> [Body<T>; 3] {
     let tetrahedra = || TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]);
     [
         Body::new(tetrahedra(), DENSITY).model(TotalLagrangian::new(stvk(5e3, 0.4))),
         Body::new(tetrahedra(), DENSITY).model(TensorMass::new(stvk(5e3, 0.4))).keep_volume(1e4),
-        Body::new(tetrahedra(), DENSITY).model(LinearTensorMass::new(linear(5e3, 0.4))),
         Body::new(HexMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]), DENSITY)
             .model(TotalLagrangian::new(stvk(5e3, 0.4))),
     ]
@@ -49,7 +49,7 @@ fn a_load_far_too_strong_is_refused_and_undone<T: Scalar>(peak: f64) {
         assert_eq!(bits(&world), before);
     }
 }
-in_both_precisions!(a_load_far_too_strong_is_refused_and_undone, f32: 1e36, f64: 1e300);
+in_both_precisions!(a_load_far_too_strong_is_refused_and_undone, f32: 1e30, f64: 1e30);
 
 /// Tissue that stiffens beyond a fixed sub-step is told the one that would do, at the step where it happens.
 #[test]
@@ -93,8 +93,19 @@ fn the_refusal_names_the_body_that_is_too_fast() {
 /// A world without bodies has nothing to be refused for.
 #[test]
 fn an_empty_world_only_lets_time_pass() {
+    for substep in [Substep::Automatic, Substep::Fixed(1e-3)] {
+        let config = WorldConfig { step: 1.0, substep, ..WorldConfig::default() };
+        let mut world = World::<f64>::new(config).unwrap();
+        world.step().unwrap();
+        assert_eq!(world.time(), 1.0);
+    }
+}
+
+/// Sub-steps so short that a step would take more than a hundred thousand are refused when the world is made, not in a
+/// step that blames the tissue for them.
+#[test]
+fn a_sub_step_that_divides_a_step_too_finely_is_refused() {
     let config = WorldConfig { step: 1.0, substep: Substep::Fixed(1e-9), ..WorldConfig::default() };
-    let mut world = World::<f64>::new(config).unwrap();
-    world.step().unwrap();
-    assert_eq!(world.time(), 1.0);
+    let Err(WorldError::OutOfRange { name, value, .. }) = World::<f64>::new(config).map(|_| ()) else { panic!() };
+    assert_eq!((name, value), ("substep", 1e-9));
 }

@@ -63,7 +63,7 @@ fn the_bound_is_above_the_fastest_mode_under_every_law() {
     let deformations: [fn(Vector) -> Vector; 4] = [
         |x| x,
         |x| Vector::new(1.2 * x.x, 0.9 * x.y, 1.4 * x.z),
-        |x| Vector::new(0.8 * x.x, 0.8 * x.y + 0.3 * x.z, 0.7 * x.z),
+        |x| Vector::new(0.95 * x.x, 0.9 * x.y + 0.1 * x.z, 0.95 * x.z),
         |x| Vector::new(x.x + 8.0 * x.z * x.z, x.y * (1.0 + 2.0 * x.z), 1.1 * x.z),
     ];
     let meshes: [(VolumeMesh, f64); 3] = [
@@ -77,8 +77,9 @@ fn the_bound_is_above_the_fastest_mode_under_every_law() {
             for (number, deformation) in deformations.iter().enumerate() {
                 let (mut world, id) = free(mesh.clone(), &tissue, *keep_volume);
                 world.body_mut(id).set_positions(deformation);
+                let mut scratch = Scratch::new(world.body(id).positions().len());
                 let fastest = largest_squared_frequency(&world, id);
-                let above = (bound.squared_frequency(world.body(id).positions()) / fastest).sqrt();
+                let above = (bound.squared_frequency(world.body(id).positions(), &mut scratch) / fastest).sqrt();
                 assert!(above >= 1.0, "{}, deformation {number}: the bound is only {above} of ω", tissue.kind());
                 if number == 0 {
                     assert!(above < 1.34, "{} at rest: {above}", tissue.kind());

@@ -66,13 +66,17 @@ pub(crate) fn side(name: &str) -> Region {
 }
 
 /// Steps until the motion has died down, and measures then. `quiet` is the kinetic energy over the elastic one at which
-/// that is so; an error of displacement of about its square root is left.
+/// that is so, for many steps on end: at its turning points a swing stands still as well. An error of displacement of
+/// about its square root is left.
 pub(crate) fn settle<T: Scalar>(world: &mut World<T>, body: BodyId, quiet: f64) -> BodyObservables {
-    const MOST_STEPS: usize = 2000;
+    const MOST_STEPS: usize = 3000;
+    const QUIET_STEPS: usize = 30;
+    let mut quiet_steps = 0;
     for _ in 0..MOST_STEPS {
         world.step().unwrap();
         let seen = world.observe(body);
-        if seen.kinetic_energy <= quiet * seen.elastic_energy {
+        quiet_steps = if seen.kinetic_energy <= quiet * seen.elastic_energy { quiet_steps + 1 } else { 0 };
+        if quiet_steps == QUIET_STEPS {
             return seen;
         }
     }
