@@ -1,3 +1,4 @@
+use super::step::MAX_SUBSTEPS;
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
 use crate::math::Scalar;
@@ -19,7 +20,7 @@ pub enum Substep {
     /// As few as are stable, found anew in every step.
     #[default]
     Automatic,
-    /// Sub-steps no longer than this [s, > 0]. One that is not stable is refused when a body is added, and when the
+    /// Sub-steps no longer than this [s, > 0, at least a hundred-thousandth of the step]. One that is not stable is refused when a body is added, and when the
     /// tissue stiffens so much that it stops being so.
     Fixed(f64),
 }
@@ -42,6 +43,9 @@ impl WorldConfig {
         match self.substep {
             Substep::Fixed(value) if !(value.is_finite() && value > 0.0) => {
                 out_of_range("substep", value, "positive [s]")
+            }
+            Substep::Fixed(value) if self.step / value > MAX_SUBSTEPS => {
+                out_of_range("substep", value, "at least a hundred-thousandth of the step [s]")
             }
             _ => Ok(()),
         }
