@@ -11,9 +11,11 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode};
 use viscera::body::Body;
 use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
-use viscera::model::{ForceModel, LinearTensorMass, ModelRecipe, Scratch, TensorMass, TotalLagrangian, VolumePenalty};
+use viscera::model::{
+    ForceModel, LinearTensorMass, ModelRecipe, Precision, Scratch, TensorMass, TotalLagrangian, VolumePenalty,
+};
 use viscera::world::{World, WorldConfig};
 use viscera_benches::{Machine, instruction_set};
 
@@ -40,7 +42,7 @@ struct Suite<'a> {
 
 impl Suite<'_> {
     /// Measures `round`, which handles `elements` elements and gives the time that counts.
-    fn measure<T: Scalar>(
+    fn measure<T: Precision>(
         &self,
         name: &str,
         elements: usize,
@@ -77,7 +79,7 @@ impl Suite<'_> {
         self.lines.borrow_mut().push(line);
     }
 
-    fn forces<T: Scalar>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh, flops: Option<f64>) {
+    fn forces<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh, flops: Option<f64>) {
         let x = stretched::<T>(mesh);
         let (mut scratch, mut out) = (Scratch::new(x.len()), vec![Vec3::ZERO; x.len()]);
         let yardstick = flops.map_or(Yardstick::Bytes(model.bytes() as f64), Yardstick::Flops);
@@ -89,7 +91,7 @@ impl Suite<'_> {
     }
 
     /// One sub-step of a beam that swings under gravity, all that belongs to it: forces, loads, motion, guard.
-    fn substep<T: Scalar>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe<T>>) {
+    fn substep<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>) {
         let mut world = World::new(WorldConfig { step: 2e-3, ..WorldConfig::default() }).unwrap();
         let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
         world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
@@ -106,7 +108,7 @@ impl Suite<'_> {
     }
 
     /// Removes every 97th tetrahedron; the time per removed one.
-    fn removal<T: Scalar>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh) {
+    fn removal<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh) {
         let cells: Vec<u32> = (0..mesh.cell_count() as u32).step_by(97).collect();
         let id = format!("removal/{name}/of-{}", mesh.cell_count());
         self.measure::<T>(&id, cells.len(), Yardstick::None, || {
@@ -119,12 +121,12 @@ impl Suite<'_> {
 }
 
 /// A smooth deformation in which every term of every law counts.
-fn stretched<T: Scalar>(mesh: &VolumeMesh) -> Vec<Vec3<T>> {
+fn stretched<T: Precision>(mesh: &VolumeMesh) -> Vec<Vec3<T>> {
     let bend = |x: &Vec3<f64>| Vec3::new(x.x + 0.2 * x.z * x.z, 0.98 * x.y, 1.05 * x.z).cast();
     mesh.nodes().iter().map(bend).collect()
 }
 
-fn suite<T: Scalar>(suite: &Suite<'_>) {
+fn suite<T: Precision>(suite: &Suite<'_>) {
     let lame = Lame::from_young_poisson(5e3, 0.4).unwrap();
     let longitudinal = Lame::from_young_poisson(12e3, 0.4).unwrap();
     let linear = || Tissue::uniform(LinearElastic::new(lame));
@@ -140,7 +142,7 @@ fn suite<T: Scalar>(suite: &Suite<'_>) {
         moved.sort_by(f64::total_cmp);
         let threshold = moved[moved.len() / 2];
 
-        let models: [(&str, Box<dyn ModelRecipe<T>>, Option<f64>); 5] = [
+        let models: [(&str, Box<dyn ModelRecipe>, Option<f64>); 5] = [
             ("linear-tensor-mass", Box::new(LinearTensorMass::new(linear())), None),
             ("tensor-mass", Box::new(TensorMass::new(stvk())), None),
             ("tensor-mass-half-linear", Box::new(TensorMass::new(stvk()).adaptive(threshold)), None),

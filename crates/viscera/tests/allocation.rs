@@ -5,13 +5,13 @@ use viscera::body::{Body, Load, LoosePieces};
 use viscera::curve::Curve;
 use viscera::instrument::{Cautery, Grasper};
 use viscera::material::{LinearElastic, StVenantKirchhoff, Tissue};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh};
-use viscera::model::{LinearTensorMass, ModelRecipe, TensorMass, TotalLagrangian};
+use viscera::model::{LinearTensorMass, ModelRecipe, Precision, TensorMass, TotalLagrangian};
 use viscera::world::{World, WorldConfig};
 
 /// A beam under gravity and pressure that is grasped, pulled, burnt through, and loses the piece beyond the cut.
-fn operation<T: Scalar>(recipe: Box<dyn ModelRecipe<T>>, hexahedra: bool) -> World<T> {
+fn operation<T: Precision>(recipe: Box<dyn ModelRecipe>, hexahedra: bool) -> World<T> {
     let (cells, size) = ([2, 2, 8], [0.04, 0.04, 0.16]);
     let body = if hexahedra {
         Body::new(HexMesh::box_grid(cells, size), 1000.0)
@@ -37,10 +37,10 @@ fn operation<T: Scalar>(recipe: Box<dyn ModelRecipe<T>>, hexahedra: bool) -> Wor
     world
 }
 
-fn assert_no_step_allocates<T: Scalar>() {
+fn assert_no_step_allocates<T: Precision>() {
     let linear = Tissue::uniform(LinearElastic::from_young_poisson(5e3, 0.4).unwrap());
     let stvk = Tissue::uniform(StVenantKirchhoff::from_young_poisson(5e3, 0.4).unwrap());
-    let recipes: [(Box<dyn ModelRecipe<T>>, bool); 5] = [
+    let recipes: [(Box<dyn ModelRecipe>, bool); 5] = [
         (Box::new(LinearTensorMass::new(linear)), false),
         (Box::new(TensorMass::new(stvk.clone())), false),
         (Box::new(TensorMass::new(stvk.clone()).adaptive(5e-3)), false),
@@ -49,7 +49,7 @@ fn assert_no_step_allocates<T: Scalar>() {
     ];
     for (recipe, hexahedra) in recipes {
         let name = format!("{} in {}", recipe.kind(), T::NAME);
-        let mut world = operation(recipe, hexahedra);
+        let mut world = operation::<T>(recipe, hexahedra);
         let mut removed = 0;
         for step in 0..60 {
             let allocated = measure(|| removed += world.step().unwrap().removed_cells);

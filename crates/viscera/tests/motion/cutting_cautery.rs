@@ -2,7 +2,7 @@
 
 use viscera::curve::Curve;
 use viscera::instrument::{Cautery, Path};
-use viscera::math::Scalar;
+use viscera::model::Precision;
 use viscera::world::World;
 
 use crate::support::{Vector, free_bar, in_both_precisions, side, world};
@@ -10,7 +10,7 @@ use crate::support::{Vector, free_bar, in_both_precisions, side, world};
 const RADIUS: f64 = 7e-3; // m
 
 /// The removed cells after a straight way of the tip through the bar, at rest, within `steps` steps of 10 ms.
-fn removed_on_a_way<T: Scalar>(from: Vector, to: Vector, steps: u32, on: (f64, f64)) -> Vec<bool> {
+fn removed_on_a_way<T: Precision>(from: Vector, to: Vector, steps: u32, on: (f64, f64)) -> Vec<bool> {
     let duration = 0.01 * f64::from(steps);
     let mut world = world::<T>([0.0; 3], 0.01);
     let id = world.add(free_bar().fix(side("z-min"))).unwrap();
@@ -51,7 +51,7 @@ fn distance_to_tetrahedron(corners: &[Vector; 4], place: Vector) -> f64 {
 
 /// However fast the tip is, it jumps over no cell: one step through the whole bar removes what forty steps remove, and
 /// that is what the tip touches.
-fn a_fast_tip_removes_what_a_slow_one_does<T: Scalar>(_: ()) {
+fn a_fast_tip_removes_what_a_slow_one_does<T: Precision>(_: ()) {
     let (from, to) = (Vector::new(-0.02, 0.013, 0.071), Vector::new(0.06, 0.027, 0.106));
     let always = (f64::NEG_INFINITY, f64::INFINITY);
     let at_once = removed_on_a_way::<T>(from, to, 1, always);

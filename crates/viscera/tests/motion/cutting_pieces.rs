@@ -1,9 +1,8 @@
 //! Cells are removed while a body moves: mass, nodes and pieces.
 
 use viscera::body::{Body, LoosePieces, NodeMotion};
-use viscera::math::Scalar;
 use viscera::mesh::TetMesh;
-use viscera::model::{LinearTensorMass, ModelRecipe, TensorMass, TotalLagrangian};
+use viscera::model::{LinearTensorMass, ModelRecipe, Precision, TensorMass, TotalLagrangian};
 use viscera::world::{BodyId, World, WorldError};
 
 use crate::support::{
@@ -11,15 +10,15 @@ use crate::support::{
 };
 
 /// Cells of the bar whose centre lies between two heights [m].
-fn slice<T: Scalar>(world: &World<T>, id: BodyId, from: f64, to: f64) -> Vec<u32> {
+fn slice<T: Precision>(world: &World<T>, id: BodyId, from: f64, to: f64) -> Vec<u32> {
     let mesh = world.body(id).mesh();
     let height = |cell: usize| mesh.cell(cell).iter().map(|&node| mesh.nodes()[node as usize].z).sum::<f64>() / 4.0;
     (0..mesh.cell_count()).filter(|&cell| (from..to).contains(&height(cell))).map(|cell| cell as u32).collect()
 }
 
 /// Mass goes with the cells, ρ V of each, and what no cell needs any longer stands still.
-fn removed_cells_take_their_mass_along_and_their_nodes_stop<T: Scalar>(tolerance: f64) {
-    let recipes: [Box<dyn ModelRecipe<T>>; 3] = [
+fn removed_cells_take_their_mass_along_and_their_nodes_stop<T: Precision>(tolerance: f64) {
+    let recipes: [Box<dyn ModelRecipe>; 3] = [
         Box::new(TotalLagrangian::new(stvk(5e3, 0.4))),
         Box::new(TensorMass::new(stvk(5e3, 0.4))),
         Box::new(LinearTensorMass::new(linear(5e3, 0.4))),

@@ -1,9 +1,8 @@
 //! A body that nothing holds: what must be conserved is.
 
 use viscera::body::Body;
-use viscera::math::Scalar;
 use viscera::mesh::TetMesh;
-use viscera::model::{ModelRecipe, TensorMass, TotalLagrangian};
+use viscera::model::{ModelRecipe, Precision, TensorMass, TotalLagrangian};
 
 use crate::support::{
     DENSITY, Vector, assert_relative, assert_vector, free_bar, in_both_precisions, stvk, world,
@@ -11,7 +10,7 @@ use crate::support::{
 };
 
 /// Largest relative change of momentum and angular momentum of a tumbling, swinging bar over 1000 sub-steps.
-fn assert_tumbling_keeps_momenta<T: Scalar>(recipe: impl ModelRecipe<T> + 'static, tolerance: f64) {
+fn assert_tumbling_keeps_momenta<T: Precision>(recipe: impl ModelRecipe + 'static, tolerance: f64) {
     let mut world = world::<T>([0.0; 3], 5e-3);
     let mesh = TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]);
     let id = world.add(Body::new(mesh, DENSITY).model(recipe).keep_volume(1e4)).unwrap();
@@ -32,7 +31,7 @@ fn assert_tumbling_keeps_momenta<T: Scalar>(recipe: impl ModelRecipe<T> + 'stati
 
 /// Momentum and angular momentum are kept by any forces that obey Newton's third law, and by the scheme exactly: what
 /// is left is rounding.
-fn tumbling_keeps_momentum_and_angular_momentum<T: Scalar>(tolerance: f64) {
+fn tumbling_keeps_momentum_and_angular_momentum<T: Precision>(tolerance: f64) {
     assert_tumbling_keeps_momenta::<T>(TotalLagrangian::new(stvk(5e3, 0.4)), tolerance);
 }
 in_both_precisions!(tumbling_keeps_momentum_and_angular_momentum, f32: 1e-4, f64: 1e-12);
@@ -47,7 +46,7 @@ fn tensor_mass_keeps_momentum_but_for_the_digits_that_its_polynomials_cancel() {
 
 /// x = −g t²/2 and v = −g t: central differences are exact for a constant acceleration, and an unheld body feels no
 /// stress. In single precision half an ulp at 4 m is 2.4e-7 m, a strain of 1e-5 over a cell.
-fn a_body_that_nothing_holds_falls_as_galilei_says<T: Scalar>(tolerance: f64) {
+fn a_body_that_nothing_holds_falls_as_galilei_says<T: Precision>(tolerance: f64) {
     let mut world = world::<T>([0.0, -9.81, 0.0], 1e-2);
     let id = world.add(free_bar()).unwrap();
     for _ in 0..50 {

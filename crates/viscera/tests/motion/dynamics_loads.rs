@@ -2,16 +2,15 @@
 
 use viscera::body::{Body, Load};
 use viscera::curve::Curve;
-use viscera::math::Scalar;
 use viscera::mesh::{Region, TetMesh};
-use viscera::model::TotalLagrangian;
+use viscera::model::{Precision, TotalLagrangian};
 
 use crate::support::{
     DENSITY, Vector, assert_relative, assert_vector, free_bar, in_both_precisions, side, stvk, world,
 };
 
 /// At the end of every step prescribed nodes are where their curve says, and fixed ones where they were.
-fn prescribed_nodes_are_on_their_curve_after_every_step<T: Scalar>(tolerance: f64) {
+fn prescribed_nodes_are_on_their_curve_after_every_step<T: Precision>(tolerance: f64) {
     let points =
         vec![(0.0, Vector::ZERO), (0.05, Vector::new(0.004, 0.0, 0.01)), (0.1, Vector::new(0.0, -0.006, 0.002))];
     let curve = Curve::piecewise_linear(points).unwrap();
@@ -49,7 +48,7 @@ fn a_load_that_ends_has_given_its_impulse() {
 }
 
 /// x = F X: the volume varies by det F − 1 and the energy is V ψ(F), ψ = λ/2 (tr E)² + μ tr E².
-fn an_affine_stretch_has_its_closed_form<T: Scalar>(tolerance: f64) {
+fn an_affine_stretch_has_its_closed_form<T: Precision>(tolerance: f64) {
     let (size, young, poisson) = ([0.1, 0.2, 0.1], 5e3, 0.4);
     let mesh = TetMesh::box_grid([2, 3, 2], size);
     let mut world = world::<T>([0.0, -9.81, 0.0], 1e-3);

@@ -2,9 +2,8 @@
 
 use viscera::body::{Body, Load};
 use viscera::curve::Curve;
-use viscera::math::Scalar;
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
-use viscera::model::TotalLagrangian;
+use viscera::model::{Precision, TotalLagrangian};
 use viscera::world::{BodyObservables, World};
 
 use crate::support::{
@@ -22,7 +21,7 @@ const QUIET: f64 = 0.05;
 
 /// A bar of linear tissue without lateral contraction along z, held at z = 0, critically damped in its slowest mode: that
 /// of bending, ω = 1.875² √(E w²/12ρ)/L².
-fn bar<T: Scalar>(mesh: impl Into<VolumeMesh>) -> Body<T> {
+fn bar(mesh: impl Into<VolumeMesh>) -> Body {
     let bending = 1.875_f64.powi(2) * (YOUNG * AREA / (12.0 * DENSITY)).sqrt() / (LENGTH * LENGTH);
     let tissue = linear(YOUNG, 0.0);
     Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue)).damping(2.0 * bending).fix(side("z-min"))
@@ -37,7 +36,7 @@ fn tetrahedra() -> TetMesh {
 }
 
 /// Mean displacement of the free end [m].
-fn end_displacement<T: Scalar>(world: &World<T>) -> Vector {
+fn end_displacement<T: Precision>(world: &World<T>) -> Vector {
     let body = world.body(world.body_ids().next().unwrap());
     let nodes = side("z-max").nodes(body.mesh()).unwrap();
     let count = nodes.len() as f64;
@@ -45,7 +44,7 @@ fn end_displacement<T: Scalar>(world: &World<T>) -> Vector {
     nodes.into_iter().fold(Vector::ZERO, |sum, node| sum + displacement(node) / count)
 }
 
-fn settled<T: Scalar>(gravity: [f64; 3], body: Body<T>, quiet: f64) -> (World<T>, BodyObservables) {
+fn settled<T: Precision>(gravity: [f64; 3], body: Body, quiet: f64) -> (World<T>, BodyObservables) {
     let mut world = world(gravity, 1e-2);
     let id = world.add(body).unwrap();
     let seen = settle(&mut world, id, quiet);
@@ -54,7 +53,7 @@ fn settled<T: Scalar>(gravity: [f64; 3], body: Body<T>, quiet: f64) -> (World<T>
 
 /// A hanging bar is longer by ρgL²/2E, exactly so at the nodes of a column of hexahedra, and what holds it carries its
 /// weight. The tolerance in double precision is that of rest.
-fn a_hanging_bar_stretches_under_its_weight<T: Scalar>(tolerance: f64) {
+fn a_hanging_bar_stretches_under_its_weight<T: Precision>(tolerance: f64) {
     let quiet = QUIET * tolerance * tolerance;
     let (world, seen) = settled::<T>([0.0, 0.0, GRAVITY], bar(hexahedra()), quiet);
     let longer = DENSITY * GRAVITY * LENGTH * LENGTH / (2.0 * YOUNG);
@@ -66,7 +65,7 @@ fn a_hanging_bar_stretches_under_its_weight<T: Scalar>(tolerance: f64) {
 in_both_precisions!(a_hanging_bar_stretches_under_its_weight, f32: 3e-4, f64: 1e-6);
 
 /// A dead traction t along z on the end: u = tL/E, and the reaction is −tA, on tetrahedra too, whose patch test it is.
-fn a_pulled_bar_stretches_by_traction_over_young<T: Scalar>(tolerance: f64) {
+fn a_pulled_bar_stretches_by_traction_over_young<T: Precision>(tolerance: f64) {
     let traction = Vector::new(0.0, 0.0, 300.0); // Pa
     let load = || Load::Traction { region: side("z-max"), traction: Curve::constant(traction) };
     for body in [bar(hexahedra()), bar(tetrahedra())] {
@@ -80,7 +79,7 @@ in_both_precisions!(a_pulled_bar_stretches_by_traction_over_young, f32: 3e-4, f6
 /// On hexahedra, four corners carry a quarter of the pressure on their side each: a column stays straight under it.
 ///
 /// Pressure p on the end presses with p·A, and squeezes by pL/E: without lateral contraction the area stays A.
-fn a_pressed_bar_is_held_by_pressure_times_area<T: Scalar>(tolerance: f64) {
+fn a_pressed_bar_is_held_by_pressure_times_area<T: Precision>(tolerance: f64) {
     let pressure = 300.0; // Pa
     let load = || Load::Pressure { region: side("z-max"), pressure: Curve::constant(pressure) };
     for body in [bar(hexahedra()), bar(tetrahedra())] {
@@ -106,11 +105,11 @@ fn a_force_on_a_region_is_held_whole() {
 fn pressure_all_around_squeezes_a_free_body_by_pressure_over_bulk_modulus() {
     let poisson = 0.4;
     let bulk = YOUNG / (3.0 * (1.0 - 2.0 * poisson));
-    let body = Body::<f64>::new(TetMesh::box_grid([2, 3, 2], [0.1, 0.2, 0.1]), DENSITY)
+    let body = Body::new(TetMesh::box_grid([2, 3, 2], [0.1, 0.2, 0.1]), DENSITY)
         .model(TotalLagrangian::new(linear(YOUNG, poisson)))
         .damping(60.0)
         .load(Load::Pressure { region: Region::Surface, pressure: Curve::constant(1e-5 * bulk) });
-    let (_, seen) = settled([0.0; 3], body, 1e-14);
+    let (_, seen) = settled::<f64>([0.0; 3], body, 1e-14);
     assert_relative(seen.volume_variation, -1e-5, 1e-4);
     assert!(seen.momentum.norm() < 1e-12 * seen.mass, "it drifts: {:?}", seen.momentum);
 }

@@ -3,16 +3,15 @@
 use viscera::body::{Body, NodeMotion};
 use viscera::curve::Curve;
 use viscera::instrument::Grasper;
-use viscera::math::Scalar;
 use viscera::mesh::TetMesh;
-use viscera::model::TotalLagrangian;
+use viscera::model::{Precision, TotalLagrangian};
 
 use crate::support::{DENSITY, Vector, assert_vector, free_bar, in_both_precisions, side, stvk, world};
 
 const TIP: Vector = Vector::new(0.02, 0.02, 0.16); // m, middle of the free end
 
 /// Closed, the jaws hold the nodes within their radius and carry them along without turning; open, they hold none.
-fn jaws_carry_what_they_took_until_they_open<T: Scalar>(tolerance: f64) {
+fn jaws_carry_what_they_took_until_they_open<T: Precision>(tolerance: f64) {
     let away = TIP + Vector::new(0.01, 0.004, 0.02);
     let path = Curve::piecewise_linear(vec![(0.02, TIP), (0.1, away)]).unwrap();
     let mut world = world::<T>([0.0; 3], 5e-3);
@@ -49,7 +48,7 @@ fn jaws_carry_what_they_took_until_they_open<T: Scalar>(tolerance: f64) {
 in_both_precisions!(jaws_carry_what_they_took_until_they_open, f32: 1e-5, f64: 1e-12);
 
 /// A piece that hangs from the jaws alone pulls at them with its weight.
-fn a_hanging_weight_is_felt_as_mass_times_gravity<T: Scalar>(tolerance: f64) {
+fn a_hanging_weight_is_felt_as_mass_times_gravity<T: Precision>(tolerance: f64) {
     let gravity = Vector::new(0.0, 0.0, -2.0); // m/s², along the bar
     let mut world = world::<T>(gravity.to_array(), 5e-3);
     let id = world

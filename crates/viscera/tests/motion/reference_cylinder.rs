@@ -12,7 +12,7 @@ use crate::support::{
 };
 
 /// Displacement of the loaded node [m] and volume variation of the whole at rest.
-fn bend(case: &Reference, recipe: Box<dyn ModelRecipe<f64>>, keep_volume: f64, force: f64) -> (Vector, f64) {
+fn bend(case: &Reference, recipe: Box<dyn ModelRecipe>, keep_volume: f64, force: f64) -> (Vector, f64) {
     let (node, height) = (number(&case.data["loads"]["node_0based"]) as u32, number(&case.data["mesh"]["H_m"]));
     // Twice the first frequency of a clamped rod, 1.875² √(E r²/4ρ)/H²: critical damping of the slowest mode.
     let (young, radius) = (number(&case.data["material"]["E_Pa"]), number(&case.data["mesh"]["R_m"]));

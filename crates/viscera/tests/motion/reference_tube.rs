@@ -26,7 +26,7 @@ fn fibres_along_a_tube_hold_it_back() {
         let direction = vector(&material["a0"]).to_array();
         let tissue = Tissue::uniform(TransverseStVenantKirchhoff::new(transverse, direction, longitudinal).unwrap());
         // The tables and the direct element take turns: both must arrive.
-        let body = Body::<f64>::new(case.mesh(), DENSITY);
+        let body = Body::new(case.mesh(), DENSITY);
         let body =
             if factor == 5.0 { body.model(TensorMass::new(tissue)) } else { body.model(TotalLagrangian::new(tissue)) };
         let end = |z: f64| Region::plane([0.0, 0.0, z], [0.0, 0.0, 1.0], 0.0);

@@ -4,9 +4,9 @@ use viscera::body::{Body, Load};
 use viscera::curve::Curve;
 use viscera::instrument::{Cautery, Grasper, Path};
 use viscera::material::{Fibre, Lame, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
-use viscera::math::{Mat3, Scalar};
+use viscera::math::Mat3;
 use viscera::mesh::{Region, TetMesh};
-use viscera::model::TensorMass;
+use viscera::model::{Precision, TensorMass};
 use viscera::world::{World, WorldConfig};
 
 use crate::support::{Vector, in_both_precisions};
@@ -62,7 +62,7 @@ impl Telling {
 
 /// Displacements after 50 steps of an operation with gravity, fibres, pressure, a grasper and a cautery, in metres, in the
 /// plain order and pose; and how many cells are left.
-fn play<T: Scalar>(telling: &Telling) -> (Vec<Vector>, usize) {
+fn play<T: Precision>(telling: &Telling) -> (Vec<Vector>, usize) {
     // Pa = kg/(m s²), kg/m³
     let (pascal, density) = (1.0 / telling.length, 1000.0 / telling.length.powi(3));
     let gravity = telling.direction(Vector::new(0.0, -9.81, 0.0)).to_array();
@@ -98,7 +98,7 @@ fn play<T: Scalar>(telling: &Telling) -> (Vec<Vector>, usize) {
     ((0..count).map(displacement).collect(), body.cell_count())
 }
 
-fn assert_same_motion<T: Scalar>(telling: &Telling, tolerance: f64) {
+fn assert_same_motion<T: Precision>(telling: &Telling, tolerance: f64) {
     let ((plain, plain_cells), (told, told_cells)) = (play::<T>(&Telling::PLAIN), play::<T>(telling));
     assert!(plain_cells < 192, "the cautery must have cut");
     assert_eq!(plain_cells, told_cells);
@@ -108,7 +108,7 @@ fn assert_same_motion<T: Scalar>(telling: &Telling, tolerance: f64) {
 }
 
 /// A turned and shifted scene moves alike, turned and shifted.
-fn pose_does_not_matter<T: Scalar>(tolerance: f64) {
+fn pose_does_not_matter<T: Precision>(tolerance: f64) {
     let axis = Vector::new(2.0, -1.0, 2.0) / 3.0;
     let (sin, cos) = 1.1_f64.sin_cos();
     let column = |e: Vector| e * cos + axis.cross(e) * sin + axis * (axis.dot(e) * (1.0 - cos));
@@ -119,13 +119,13 @@ fn pose_does_not_matter<T: Scalar>(tolerance: f64) {
 in_both_precisions!(pose_does_not_matter, f32: 2e-3, f64: 1e-9);
 
 /// The numbers of nodes and cells are names only; sums are made in another order.
-fn numbering_does_not_matter<T: Scalar>(tolerance: f64) {
+fn numbering_does_not_matter<T: Precision>(tolerance: f64) {
     assert_same_motion::<T>(&Telling { renumbered: true, ..Telling::PLAIN }, tolerance);
 }
 in_both_precisions!(numbering_does_not_matter, f32: 2e-3, f64: 1e-9);
 
 /// Millimetres, kilograms and seconds tell the same motion: no length, mass or force is written into the code.
-fn units_do_not_matter<T: Scalar>(tolerance: f64) {
+fn units_do_not_matter<T: Precision>(tolerance: f64) {
     assert_same_motion::<T>(&Telling { length: 1000.0, ..Telling::PLAIN }, tolerance);
 }
 in_both_precisions!(units_do_not_matter, f32: 2e-3, f64: 1e-9);

@@ -2,9 +2,8 @@
 
 use viscera::body::{Body, Load};
 use viscera::curve::Curve;
-use viscera::math::Scalar;
 use viscera::mesh::{HexMesh, TetMesh};
-use viscera::model::{TensorMass, TotalLagrangian};
+use viscera::model::{Precision, TensorMass, TotalLagrangian};
 use viscera::world::{StepError, Substep, World, WorldConfig, WorldError};
 
 use crate::support::{DENSITY, Vector, bits, free_bar, in_both_precisions, linear, side, stvk, world};
@@ -16,7 +15,7 @@ fn pull(peak: f64) -> Load {
 }
 
 /// Only laws whose force grows faster than the displacement: linear tissue bears any load, if by stretching absurdly.
-fn bodies<T: Scalar>() -> [Body<T>; 3] {
+fn bodies() -> [Body; 3] {
     let tetrahedra = || TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]);
     [
         Body::new(tetrahedra(), DENSITY).model(TotalLagrangian::new(stvk(5e3, 0.4))),
@@ -28,7 +27,7 @@ fn bodies<T: Scalar>() -> [Body<T>; 3] {
 
 /// A load that tears every number apart is refused, by a step that leaves the world as it was; steps before it and
 /// observations after it see finite numbers only.
-fn a_load_far_too_strong_is_refused_and_undone<T: Scalar>(peak: f64) {
+fn a_load_far_too_strong_is_refused_and_undone<T: Precision>(peak: f64) {
     for body in bodies() {
         let mut world = world::<T>([0.0; 3], 5e-3);
         let body = body.name("torn bar").fix(side("z-min")).load(pull(peak));

@@ -3,13 +3,13 @@
 use viscera::body::LoosePieces;
 use viscera::curve::Curve;
 use viscera::instrument::{Cautery, Grasper};
-use viscera::math::Scalar;
+use viscera::model::Precision;
 use viscera::world::{World, WorldError};
 
 use crate::support::{Vector, bits, free_bar, in_both_precisions, side, world};
 
 /// Pulled, held, burnt through and bereft of its loose end within 60 steps.
-fn operation<T: Scalar>() -> World<T> {
+fn operation<T: Precision>() -> World<T> {
     let mut world = world::<T>([0.0, -9.81, 0.0], 5e-3);
     let body = free_bar().fix(side("z-min")).damping(2.0).keep_volume(1e4);
     world.add(body.loose_pieces(LoosePieces::Drop)).unwrap();
@@ -23,14 +23,14 @@ fn operation<T: Scalar>() -> World<T> {
     world
 }
 
-fn run<T: Scalar>(world: &mut World<T>, steps: usize) {
+fn run<T: Precision>(world: &mut World<T>, steps: usize) {
     for _ in 0..steps {
         world.step().unwrap();
     }
 }
 
 /// Two runs of the same operation agree in every bit of every node.
-fn two_runs_agree_in_every_bit<T: Scalar>(_: ()) {
+fn two_runs_agree_in_every_bit<T: Precision>(_: ()) {
     let (mut first, mut second) = (operation::<T>(), operation::<T>());
     run(&mut first, 60);
     run(&mut second, 60);
@@ -41,7 +41,7 @@ in_both_precisions!(two_runs_agree_in_every_bit, f32: (), f64: ());
 
 /// Put back to before the grasp, between grasp and cut, or in the middle of the cut, a world goes on with the same bits
 /// as if nothing had happened since, and so does a second world of the same making.
-fn a_snapshot_brings_back_every_bit<T: Scalar>(_: ()) {
+fn a_snapshot_brings_back_every_bit<T: Precision>(_: ()) {
     for moment in [0, 15, 30] {
         let mut world = operation::<T>();
         run(&mut world, moment);

@@ -6,9 +6,9 @@ pub(crate) use reference::{Reference, number, numbers, vector, vectors};
 
 use viscera::body::Body;
 use viscera::material::{LinearElastic, StVenantKirchhoff, Tissue};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{Region, TetMesh};
-use viscera::model::TotalLagrangian;
+use viscera::model::{Precision, TotalLagrangian};
 use viscera::world::{BodyId, BodyObservables, Substep, World, WorldConfig};
 
 pub(crate) type Vector = Vec3<f64>;
@@ -36,12 +36,12 @@ macro_rules! in_both_precisions {
 pub(crate) use in_both_precisions;
 
 /// A world that takes steps of `step` [s] under `gravity` [m/s²].
-pub(crate) fn world<T: Scalar>(gravity: [f64; 3], step: f64) -> World<T> {
+pub(crate) fn world<T: Precision>(gravity: [f64; 3], step: f64) -> World<T> {
     World::new(WorldConfig { gravity, step, ..WorldConfig::default() }).unwrap()
 }
 
 /// A world without gravity whose sub-steps are exactly its steps of `step` [s].
-pub(crate) fn world_of_single_substeps<T: Scalar>(step: f64) -> World<T> {
+pub(crate) fn world_of_single_substeps<T: Precision>(step: f64) -> World<T> {
     World::new(WorldConfig { gravity: [0.0; 3], step, substep: Substep::Fixed(step) }).unwrap()
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn stvk(young: f64, poisson: f64) -> Tissue {
 }
 
 /// A bar of 4×4×16 cm along z, of soft St Venant–Kirchhoff tissue, held by nothing.
-pub(crate) fn free_bar<T: Scalar>() -> Body<T> {
+pub(crate) fn free_bar() -> Body {
     Body::new(TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]), DENSITY).model(TotalLagrangian::new(stvk(5e3, 0.4)))
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn side(name: &str) -> Region {
 /// Steps until the motion has died down, and measures then. `quiet` is the kinetic energy over the elastic one at which
 /// that is so, for many steps on end: at its turning points a swing stands still as well. An error of displacement of
 /// about its square root is left.
-pub(crate) fn settle<T: Scalar>(world: &mut World<T>, body: BodyId, quiet: f64) -> BodyObservables {
+pub(crate) fn settle<T: Precision>(world: &mut World<T>, body: BodyId, quiet: f64) -> BodyObservables {
     const MOST_STEPS: usize = 3000;
     const QUIET_STEPS: usize = 30;
     let mut quiet_steps = 0;
@@ -84,7 +84,7 @@ pub(crate) fn settle<T: Scalar>(world: &mut World<T>, body: BodyId, quiet: f64) 
 }
 
 /// Every number of a state, bit by bit.
-pub(crate) fn bits<T: Scalar>(world: &World<T>) -> Vec<u64> {
+pub(crate) fn bits<T: Precision>(world: &World<T>) -> Vec<u64> {
     let of = |v: &Vec3<T>| v.to_array().map(|value| value.to_f64().to_bits());
     let mut bits = vec![world.time().to_bits()];
     for body in world.body_ids().map(|id| world.body(id)) {
