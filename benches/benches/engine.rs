@@ -92,7 +92,7 @@ impl Suite<'_> {
 
     /// One sub-step of a beam that swings under gravity, all that belongs to it: forces, loads, motion, guard.
     fn substep<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>) {
-        let mut world = World::new(WorldConfig { step: 2e-3, ..WorldConfig::default() }).unwrap();
+        let mut world = World::<T>::new(WorldConfig { step: 2e-3, ..WorldConfig::default() }).unwrap();
         let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
         world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
         let snapshot = world.snapshot();
@@ -151,17 +151,17 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
             ("total-lagrangian/transverse", Box::new(TotalLagrangian::new(fibred())), None),
         ];
         for (name, recipe, flops) in models {
-            let model = recipe.build(&mesh).unwrap();
+            let model = T::build_model(recipe.as_ref(), &mesh).unwrap();
             suite.forces(name, model.as_ref(), &mesh, flops);
             suite.removal(name, model.as_ref(), &mesh);
-            suite.substep(name, &mesh, recipe);
+            suite.substep::<T>(name, &mesh, recipe);
         }
         let penalty = VolumePenalty::<T>::new(&tetrahedra, 1e4).unwrap();
         suite.forces("volume-penalty", &penalty, &mesh, None);
         suite.removal("volume-penalty", &penalty, &mesh);
 
         let hexahedra = VolumeMesh::from(HexMesh::box_grid(cells, BEAM));
-        let model = TotalLagrangian::new(stvk()).build(&hexahedra).unwrap();
+        let model = T::build_model(&TotalLagrangian::new(stvk()), &hexahedra).unwrap();
         suite.forces::<T>("total-lagrangian/hexahedra", model.as_ref(), &hexahedra, None);
     }
 }
