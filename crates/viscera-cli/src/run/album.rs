@@ -111,8 +111,12 @@ impl View {
             .camera(self.camera)
             .title(built.file.title.as_deref().unwrap_or_default())
             .footer(&format!("{:.2} s   {} cells{removed}", moment.time, grouped(moment.cells)));
-        for (skin, rest) in moment.skins.iter().zip(&start.skins) {
-            if self.is_worth_a_ghost(skin, rest) {
+        // All bodies have ghosts, or none: one without would look as if it had not moved.
+        let pairs = || moment.skins.iter().zip(&start.skins);
+        let ghosts = pairs().any(|(skin, rest)| self.has_moved_far(skin, rest));
+        for (skin, rest) in pairs() {
+            // The rest shape of a cut body would hide the cut.
+            if ghosts && !skin.cut.contains(&true) {
                 picture = picture.body(Body::new(&rest.nodes, &rest.triangles).ghost());
             }
             picture = picture.body(Body::new(&skin.nodes, &skin.triangles).tissue().cut(&skin.cut).fixed(&skin.fixed));
@@ -125,11 +129,11 @@ impl View {
         picture
     }
 
-    /// Whether a body has moved far enough for its rest shape to be seen; not when it is cut, which hides the cut.
-    fn is_worth_a_ghost(&self, skin: &Skin, rest: &Skin) -> bool {
+    /// Whether a body has moved far enough for its rest shape to be seen beside it.
+    fn has_moved_far(&self, skin: &Skin, rest: &Skin) -> bool {
         let limit = WORTH_A_GHOST * self.size;
         let moved = |node: &u32| (skin.nodes[*node as usize] - rest.nodes[*node as usize]).norm() > limit;
-        !skin.cut.contains(&true) && rest.triangles.iter().flatten().any(moved)
+        rest.triangles.iter().flatten().any(moved)
     }
 }
 

@@ -7,8 +7,8 @@ use viscera_io::picture::{Colour, Solid, Tool};
 
 use super::moment::ToolPose;
 
-/// Radius of a shaft, as a part of the size of the scene: 5 mm across beside a liver of 30 cm.
-const SHAFT: f64 = 0.0065;
+/// Radius of a shaft, as a part of the size of the scene: 6 mm across beside a liver of 30 cm.
+const SHAFT: f64 = 0.008;
 
 /// The solids of an instrument. `towards` leads from the tip to the hand, of length 1; `size` is that of the scene [m].
 pub(super) fn solids(tool: &ToolPose, towards: Point, size: f64) -> Vec<Solid> {

@@ -1,4 +1,4 @@
-//! Observables over time, one row for each step, as CSV.
+//! Observables over time as CSV: one row for each step, and at most so many rows that they stay readable.
 
 use std::path::PathBuf;
 
@@ -8,6 +8,9 @@ use viscera_io::write::{Table, WriteError, write_csv};
 use viscera_scene::BuiltScene;
 
 use super::folder::Folder;
+
+/// A run of more steps than this has a row for every second, third, … step, and for its last moment.
+const MOST_ROWS: u64 = 20_000;
 
 /// What was measured at one moment, in the order of the scene.
 #[derive(Debug, Default)]
@@ -21,6 +24,10 @@ pub(super) struct Observables {
     file: PathBuf,
     table: Table,
     last: Measured,
+    /// Steps from one row to the next.
+    stride: u64,
+    /// The row of the last moment, where it is not in the table yet.
+    pending: Option<Vec<f64>>,
     written_rows: usize,
 }
 
@@ -72,6 +79,8 @@ impl Observables {
             file: folder.file("observables.csv"),
             table: Table::new(header),
             last: Measured::default(),
+            stride: built.steps().div_ceil(MOST_ROWS),
+            pending: None,
             written_rows: 0,
         }
     }
@@ -81,21 +90,40 @@ impl Observables {
         &self.last
     }
 
-    /// Measures the present moment. The file is written anew whenever it has grown by a quarter, so that a run that is
-    /// killed leaves most of it and a long one does not write the same rows again and again.
-    pub(super) fn observe<T: Scalar>(&mut self, built: &mut BuiltScene<T>, substeps: u32) -> Result<(), WriteError> {
+    /// Measures the moment after `step` steps, the last of `substeps` sub-steps. The file is written anew whenever it has
+    /// grown by a quarter, so that a run that is killed leaves most of it and a long one does not write the same rows again
+    /// and again.
+    pub(super) fn observe<T: Scalar>(
+        &mut self,
+        built: &mut BuiltScene<T>,
+        step: u64,
+        substeps: u32,
+    ) -> Result<(), WriteError> {
         self.last = measure(built);
         let mut row = vec![built.world.time(), f64::from(substeps)];
         row.extend(self.last.columns().into_iter().flatten().map(|(_, value)| value));
-        self.table.push(&row)?;
-        if 4 * self.table.row_count() > 5 * self.written_rows {
-            self.write()?;
+        self.pending = Some(row);
+        if step.is_multiple_of(self.stride) {
+            self.take_pending()?;
+            if 4 * self.table.row_count() > 5 * self.written_rows {
+                self.write()?;
+            }
         }
         Ok(())
     }
 
+    fn take_pending(&mut self) -> Result<(), WriteError> {
+        self.pending.take().map_or(Ok(()), |row| self.table.push(&row))
+    }
+
+    /// Writes all rows, and that of the last moment.
+    pub(super) fn finish(&mut self) -> Result<(), WriteError> {
+        self.take_pending()?;
+        self.write()
+    }
+
     /// Writes all rows.
-    pub(super) fn write(&mut self) -> Result<(), WriteError> {
+    fn write(&mut self) -> Result<(), WriteError> {
         self.written_rows = self.table.row_count();
         write_csv(&self.file, &self.table)
     }

@@ -78,7 +78,7 @@ impl Recording {
     }
 
     fn look<T: Scalar>(&mut self, built: &mut BuiltScene<T>, substeps: u32) -> Result<(), Failure> {
-        self.observables.observe(built, substeps).map_err(unwritten)?;
+        self.observables.observe(built, self.steps, substeps).map_err(unwritten)?;
         self.tally.observe(built, self.observables.last());
         self.album.look(built, self.steps);
         if self.frames.is_due(built) {
@@ -92,7 +92,7 @@ impl Recording {
         if !self.frames.is_up_to_date(built) {
             self.frames.write(built).map_err(unwritten)?;
         }
-        self.observables.write().map_err(unwritten)?;
+        self.observables.finish().map_err(unwritten)?;
         let pictures = self.album.write(&self.folder, built, self.steps)?;
         let wall = self.began.elapsed().as_secs_f64();
         let mut files = vec![format!("bodies.pvd ({} frames)", self.frames.count())];

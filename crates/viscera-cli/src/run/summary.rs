@@ -68,6 +68,8 @@ pub(super) struct BodyResult {
     pub(super) cells: usize,
     pub(super) removed_cells: usize,
     pub(super) inverted_cells: usize,
+    /// Nodes of cells that are left.
+    pub(super) nodes_left: usize,
     pub(super) nonlinear_nodes: usize,
     #[serde(rename = "mass_kg")]
     pub(super) mass: f64,
@@ -187,6 +189,7 @@ impl Tally {
                     cells: body.mesh().cell_count(),
                     removed_cells: last.removed_cells,
                     inverted_cells: last.inverted_cells,
+                    nodes_left: body.state().cells_at_node.iter().filter(|&&cells| cells > 0).count(),
                     nonlinear_nodes: last.nonlinear_nodes,
                     mass: last.mass,
                     volume: last.volume,

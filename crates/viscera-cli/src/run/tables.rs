@@ -22,11 +22,20 @@ pub(super) fn tables(summary: &Summary) -> String {
     parts.join("\n\n")
 }
 
+/// The text of a table, its head standing out. The head is marked last: escape codes would count as letters of a column.
+fn text(table: &Table) -> String {
+    let text = table.trim_fmt();
+    match text.split_once('\n') {
+        Some((head, rows)) => format!("{}\n{rows}", heading(head)),
+        None => text,
+    }
+}
+
 /// A table without frames, numbers to the right.
 fn table(head: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
-    table.set_header(head.iter().map(|name| heading(name)).collect::<Vec<_>>());
+    table.set_header(head);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
@@ -39,7 +48,7 @@ fn table(head: &[&str]) -> Table {
 fn bodies(bodies: &[BodyResult]) -> String {
     let cut = bodies.iter().any(|body| body.removed_cells > 0);
     let inverted = bodies.iter().any(|body| body.inverted_cells > 0);
-    let adaptive = bodies.iter().any(|body| (1..body.nodes).contains(&body.nonlinear_nodes));
+    let adaptive = bodies.iter().any(|body| (1..body.nodes_left).contains(&body.nonlinear_nodes));
     let mut head = vec!["body", "cells"];
     head.extend(cut.then_some("removed"));
     head.extend(inverted.then_some("inverted"));
@@ -50,7 +59,7 @@ fn bodies(bodies: &[BodyResult]) -> String {
         let mut row = vec![body.name.clone(), grouped(body.cells - body.removed_cells)];
         row.extend(cut.then(|| grouped(body.removed_cells)));
         row.extend(inverted.then(|| grouped(body.inverted_cells)));
-        row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes))));
+        row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes_left))));
         row.extend([
             format!("{:.1} cm³", body.volume * 1e6),
             percent(body.volume_variation),
@@ -61,7 +70,7 @@ fn bodies(bodies: &[BodyResult]) -> String {
         ]);
         table.add_row(row);
     }
-    table.trim_fmt()
+    text(&table)
 }
 
 /// Bodies whose names are `ROW-COLUMN`, as in `linear-2F`, side by side: one row for each law, one column for each load.
@@ -87,7 +96,7 @@ fn comparison(bodies: &[BodyResult]) -> Option<String> {
             columns.iter().map(|column| of(column).map_or_else(String::new, |body| percent(body.volume_variation)));
         table.add_row([row.to_owned()].into_iter().chain(values).collect::<Vec<_>>());
     }
-    Some(table.trim_fmt())
+    Some(text(&table))
 }
 
 fn instruments(summary: &Summary) -> String {
@@ -103,7 +112,7 @@ fn instruments(summary: &Summary) -> String {
             or_nothing(instrument.held_nodes.to_string()),
         ]);
     }
-    table.trim_fmt()
+    text(&table)
 }
 
 fn speed(summary: &Summary) -> String {

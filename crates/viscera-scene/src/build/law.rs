@@ -161,5 +161,8 @@ fn in_cells<L>(laws: &[CellLaw], form: impl Fn(&CellLaw) -> L) -> Result<Tissue,
 where
     L: LawFamily + Into<LawKind>,
 {
-    Tissue::per_cell(&laws.iter().map(form).collect::<Vec<L>>())
+    match laws {
+        [law] => Ok(Tissue::uniform(form(law))),
+        laws => Tissue::per_cell(&laws.iter().map(form).collect::<Vec<L>>()),
+    }
 }

@@ -1,6 +1,5 @@
 use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
-use crate::dynamics::implicit::{Implicit, ImplicitMemory};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
@@ -34,7 +33,6 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) external_forces: Vec<Vec3<T>>,
     pub(crate) scratch: Scratch<T>,
     pub(crate) backup: MotionBackup<T>,
-    pub(crate) implicit: ImplicitMemory<T>,
     pub(crate) pieces: Vec<u32>,
 }
 
@@ -114,7 +112,6 @@ impl<T: Scalar> SimulatedBody<T> {
             law: recipe.tissue().kind().name(),
             damping: T::from_f64(damping),
             stiffness_damping: T::from_f64(stiffness_damping),
-            implicit: ImplicitMemory::none(),
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
@@ -179,16 +176,6 @@ impl<T: Scalar> SimulatedBody<T> {
         self.state.past.is_known = false;
     }
 
-    /// Residuals of the last linear solve of implicit steps, over its scale: at the start and after each iteration.
-    pub fn linear_history(&self) -> &[f64] {
-        self.implicit.linear_history()
-    }
-
-    /// Residuals of Newton's iterations in the last implicit step, over the forces that balance: at the start and after each.
-    pub fn newton_history(&self) -> &[f64] {
-        self.implicit.newton_history()
-    }
-
     /// Sets the positions of the free nodes [m], for a body that starts deformed.
     pub fn set_positions(&mut self, position: impl Fn(Vec3<f64>) -> Vec3<f64>) {
         for (node, motion) in self.state.motions.iter().enumerate() {
@@ -208,14 +195,6 @@ impl<T: Scalar> SimulatedBody<T> {
     /// The current surface, cut faces included.
     pub fn surface(&self) -> Vec<SurfaceTriangle> {
         self.boundary.surface(&self.state.removed)
-    }
-
-    /// Asks for the memory of implicit steps.
-    pub(crate) fn prepare_implicit(&mut self, settings: &Implicit) {
-        self.implicit = ImplicitMemory::new(&self.mesh, settings);
-        if settings.scheme.needs_past() {
-            self.state.past.reserve(self.state.positions.len());
-        }
     }
 
     /// Brings the internal forces up to date with positions and cells.

@@ -69,7 +69,7 @@ pub struct SolveReport {
 }
 
 /// Memory for solves of one size. Nothing is allocated later.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,

@@ -14,6 +14,7 @@ pub use snapshot::Snapshot;
 pub use step::StepReport;
 
 use crate::body::{Body, SimulatedBody};
+use crate::dynamics::implicit::ImplicitMemory;
 use crate::instrument::Instrument;
 use crate::math::{Scalar, Vec3};
 use crate::model::Precision;
@@ -30,6 +31,8 @@ pub struct InstrumentId(pub usize);
 pub struct World<T: Scalar> {
     config: WorldConfig,
     bodies: Vec<SimulatedBody<T>>,
+    /// Memory of implicit steps, one for each body; none if the world moves explicitly.
+    implicit: Vec<ImplicitMemory<T>>,
     instruments: Vec<Box<dyn Instrument<T>>>,
     /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
     steps: u64,
@@ -49,6 +52,7 @@ impl<T: Scalar> World<T> {
         Ok(Self {
             config,
             bodies: Vec::new(),
+            implicit: Vec::new(),
             instruments: Vec::new(),
             steps: 0,
             tips: Vec::new(),
@@ -69,7 +73,8 @@ impl<T: Scalar> World<T> {
         let mut body = SimulatedBody::new(body)?;
         self.check_integrator(&body)?;
         if let Integrator::Implicit(settings) = self.config.integrator {
-            body.prepare_implicit(&settings);
+            body.state.past.reserve(if settings.scheme.needs_past() { body.positions().len() } else { 0 });
+            self.implicit.push(ImplicitMemory::new(body.mesh(), &settings));
         }
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
@@ -111,6 +116,11 @@ impl<T: Scalar> World<T> {
     /// A body of this world. Panics for a number of another world.
     pub fn body(&self, id: BodyId) -> &SimulatedBody<T> {
         &self.bodies[id.0]
+    }
+
+    /// How the equations of a body were solved in the last implicit step; none if the world moves explicitly.
+    pub fn implicit_memory(&self, id: BodyId) -> Option<&ImplicitMemory<T>> {
+        self.implicit.get(id.0)
     }
 
     /// A body of this world, to be changed. Panics for a number of another world.

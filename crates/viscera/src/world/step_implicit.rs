@@ -14,8 +14,8 @@ impl<T: Scalar> World<T> {
         let drive = Drive { end: span.to, tips: &self.tips, gravity: Vec3::from(self.config.gravity).cast() };
         let mut report = ImplicitReport::NOTHING;
         let mut failed = None;
-        for (number, body) in self.bodies.iter_mut().enumerate() {
-            let own = implicit::advance(body, settings, span.from, self.config.step, &drive);
+        for (number, (body, memory)) in self.bodies.iter_mut().zip(&mut self.implicit).enumerate() {
+            let own = implicit::advance(body, memory, settings, span.from, self.config.step, &drive);
             if !own.converged && settings.newton != Newton::Linearised {
                 failed = failed.or(Some((number, own)));
             }

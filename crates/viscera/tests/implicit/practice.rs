@@ -90,7 +90,7 @@ fn a_solve_that_ends_early_is_reported() {
     let (mut world, id) = implicit_world(GRAVITY, 1e-2, settings, bar().fix(root()));
     let report = world.step().unwrap().implicit.unwrap();
     assert!(!report.converged && report.residual > 1e-10 && report.linear_iterations == 3, "{report:?}");
-    assert_eq!(world.body(id).linear_history().len(), 4);
+    assert_eq!(world.implicit_memory(id).unwrap().linear_history().len(), 4);
     let settings = Implicit { linear: Stop::Iterations(3), ..settings };
     let (mut world, _) = implicit_world(GRAVITY, 1e-2, settings, bar().fix(root()));
     assert!(world.step().unwrap().implicit.unwrap().converged);

@@ -4,7 +4,6 @@
 use viscera::material::{LawFamily, LawVisitor, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{Mesh, TetMesh, VolumeMesh};
-use viscera::model::Precision;
 use viscera::model::{ForceModel, Precision, VolumePenalty};
 
 use crate::support::{

@@ -4,8 +4,8 @@ use crate::mesh::VolumeMesh;
 use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter};
 
 /// What an implicit step computes in; it means nothing between steps.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ImplicitMemory<T> {
+#[derive(Clone, Debug)]
+pub struct ImplicitMemory<T> {
     /// Places at the beginning of the step [m].
     pub(super) start: Vec<Vec3<T>>,
     /// Velocities at the beginning of the step [m/s].
@@ -37,13 +37,8 @@ pub(crate) struct ImplicitMemory<T> {
 }
 
 impl<T: Scalar> ImplicitMemory<T> {
-    /// Memory of no size: a body that moves explicitly.
-    pub(crate) fn none() -> Self {
-        Self::default()
-    }
-
     /// Memory for a body of `mesh`.
-    pub(crate) fn new(mesh: &VolumeMesh, settings: &Implicit) -> Self {
+    pub fn new(mesh: &VolumeMesh, settings: &Implicit) -> Self {
         let nodes = mesh.nodes().len();
         let zeros = || vec![Vec3::ZERO; nodes];
         Self {
@@ -66,13 +61,13 @@ impl<T: Scalar> ImplicitMemory<T> {
         }
     }
 
-    /// Residuals of the last linear solve.
-    pub(crate) fn linear_history(&self) -> &[f64] {
+    /// Residuals of the last linear solve over their scale: at the start and after each iteration.
+    pub fn linear_history(&self) -> &[f64] {
         self.conjugate_gradient.history()
     }
 
-    /// Residuals of the iterations of the last step.
-    pub(crate) fn newton_history(&self) -> &[f64] {
+    /// Residuals of Newton's iterations in the last full step over the forces that balance: at the start and after each.
+    pub fn newton_history(&self) -> &[f64] {
         &self.history
     }
 }

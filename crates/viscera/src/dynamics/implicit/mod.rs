@@ -26,7 +26,7 @@ mod scheme;
 mod settings;
 mod tangent;
 
-pub(crate) use memory::ImplicitMemory;
+pub use memory::ImplicitMemory;
 pub use newton::{ImplicitReport, advance};
 pub use scheme::Scheme;
 pub use settings::{Implicit, MatrixForm, Newton};

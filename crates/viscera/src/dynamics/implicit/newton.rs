@@ -50,24 +50,23 @@ impl ImplicitReport {
     }
 }
 
-/// Advances a body from time `from` [s] by `dt` [s] to `drive.end`.
+/// Advances a body, in memory of its own, from time `from` [s] by `dt` [s] to `drive.end`.
 pub fn advance<T: Scalar>(
     body: &mut SimulatedBody<T>,
+    memory: &mut ImplicitMemory<T>,
     settings: &Implicit,
     from: f64,
     dt: f64,
     drive: &Drive<'_, T>,
 ) -> ImplicitReport {
-    let mut memory = std::mem::replace(&mut body.implicit, ImplicitMemory::none());
     let numbers = settings.scheme.numbers(body.state.past.is_known);
-    let mut step = Step { body, memory: &mut memory, settings, numbers, from, dt, drive };
+    let mut step = Step { body, memory, settings, numbers, from, dt, drive };
     step.begin();
     let report = match settings.newton {
         Newton::Linearised => step.solve_linearised(),
         Newton::Full { relative, at_most } => step.solve_in_full(relative, at_most),
     };
     step.finish();
-    body.implicit = memory;
     report
 }
 
