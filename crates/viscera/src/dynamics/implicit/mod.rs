@@ -1,7 +1,7 @@
 //! Implicit steps: the forces at the end of a step, or in its middle, decide it, so that stiff tissue bears long steps.
 //!
 //! All schemes share one form. With δ = x⁺ − x, each node has a place and a velocity that it would reach without forces,
-//! δ̂ and v̂, and three numbers r, s, θ (see [`scheme`]):
+//! δ̂ and v̂, and three numbers r, s, θ, which make the scheme:
 //!
 //! a = r/Δt² (δ − δ̂),   v⁺ = v̂ + s/Δt (δ − δ̂),   y = x + θ δ,   v_θ = (1 − θ) v + θ v⁺
 //!
