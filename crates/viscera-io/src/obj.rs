@@ -2,6 +2,9 @@
 //!
 //! Source: Wavefront Advanced Visualizer manual, appendix B1. Faces may name nodes from the end (-1 is the last one) and
 //! may have any number of corners; they are split into triangles from their first corner.
+//!
+//! Not read by way of the crate `tobj`: it lets NaN through, passes over statements that it does not know, cuts to single
+//! precision, and its errors do not say where.
 
 use std::collections::BTreeSet;
 

@@ -2,6 +2,8 @@
 //!
 //! Corners at exactly the same coordinates are one node. Normals are not read: the order of the corners says where
 //! outside is. Binary files are told by their length, since some start with `solid` as text files do.
+//!
+//! Not read by way of the crate `stl_io`: its errors do not say where, and text is cut to single precision.
 
 use std::collections::HashMap;
 

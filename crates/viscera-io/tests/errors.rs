@@ -295,3 +295,20 @@ fn words_that_should_be_others() {
         "line 2: expected a statement such as `v` or `f`, found `··`; correct it or export the file again"
     );
 }
+
+/// Ten thousand pieces that all point at the same data would fill the memory from a small file.
+#[test]
+fn data_that_many_pieces_claim() {
+    let piece = "<Piece NumberOfPoints=\"1000\"><Points><DataArray type=\"Float32\" format=\"appended\" offset=\"0\"/></Points></Piece>";
+    let pieces = piece.repeat(10_000);
+    let head = format!("<VTKFile><UnstructuredGrid>{pieces}</UnstructuredGrid><AppendedData encoding=\"raw\">_");
+    let bytes: Vec<u8> = head.into_bytes().into_iter().chain(12_000u32.to_le_bytes()).chain([0; 12_000]).collect();
+    assert!(message(vtu::parse(&bytes)).starts_with("line 1: bytes of all arrays: "));
+}
+
+/// XML a hundred thousand levels deep must not overflow the stack.
+#[test]
+fn xml_that_is_too_deep() {
+    let deep = format!("<VTKFile>{}", "<a>".repeat(100_000));
+    assert!(message(vtu::parse(deep.as_bytes())).starts_with("line 1: the XML is malformed ("));
+}

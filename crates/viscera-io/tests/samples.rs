@@ -205,3 +205,43 @@ fn faces_of_obj_come_in_many_ways() {
     let lines: Vec<String> = read.notices.iter().map(ToString::to_string).collect();
     assert_eq!(lines, ["1 polygons were split into triangles", "1 edges are not part of the mesh"]);
 }
+
+/// VTK's voxels and strips list their corners in an order of their own; turned into ours, none is mirrored.
+#[test]
+fn voxels_and_strips_are_put_into_our_order() {
+    let voxel = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1\n\
+                 CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n11\n";
+    let Ok(Imported { mesh: ImportedMesh::Hex(mesh), .. }) = viscera_io::vtk::parse(voxel.as_bytes()) else { panic!() };
+    assert!(mesh.checked().expect("a cube").1.is_clean());
+    let strip = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n";
+    let Ok(Imported { mesh: ImportedMesh::Surface(mesh), .. }) = viscera_io::vtk::parse(strip.as_bytes()) else {
+        panic!()
+    };
+    assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3]]);
+}
+
+/// A surface has no regions, and a name may stand for nothing: both are told.
+#[test]
+fn groups_that_get_lost_are_told() {
+    let mesh = |cell: &str| {
+        let head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"skin\"\n3 2 \"nothing\"\n$EndPhysicalNames\n";
+        let nodes = "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n";
+        let text = format!("{head}{nodes}$Elements\n2\n1 2 2 1 1 1 2 3\n{cell}\n$EndElements\n");
+        let read = viscera_io::gmsh::parse(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
+        read.notices.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(mesh("2 2 2 1 1 1 3 4"), ["a surface has no regions; these groups are not kept: skin"]);
+    assert_eq!(mesh("2 4 2 0 1 1 2 3 4"), ["the group `nothing` is named, but nothing belongs to it"]);
+}
+
+/// Pieces of a parallel run count their nodes from 0 each.
+#[test]
+fn pieces_are_put_behind_each_other() {
+    let piece = "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1\
+                 </DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2 3</DataArray><DataArray type=\"Int32\" \
+                 Name=\"offsets\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\">10</DataArray></Cells></Piece>";
+    let text = format!("<VTKFile><UnstructuredGrid>{piece}{piece}</UnstructuredGrid></VTKFile>");
+    let Ok(Imported { mesh: ImportedMesh::Tet(mesh), .. }) = viscera_io::vtu::parse(text.as_bytes()) else { panic!() };
+    assert_eq!(mesh.cells, [[0, 1, 2, 3], [4, 5, 6, 7]]);
+    assert_eq!(mesh.checked().expect("two bodies").1.coincident_nodes, 4);
+}

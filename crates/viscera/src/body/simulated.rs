@@ -167,8 +167,8 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 
     /// Longest stable step of the explicit scheme as the body is now [s]; infinite where nothing vibrates.
-    pub fn stable_step(&self) -> f64 {
-        stable_step(self.frequency.squared_frequency(&self.state.positions))
+    pub fn stable_step(&mut self) -> f64 {
+        stable_step(self.squared_frequency())
     }
 
     /// Cells that are not removed.
@@ -195,7 +195,10 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Bound of ω_max² at the current positions [1/s²].
     pub(crate) fn squared_frequency(&mut self) -> f64 {
-        *self.state.squared_frequency.get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions))
+        *self
+            .state
+            .squared_frequency
+            .get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions, &mut self.scratch))
     }
 
     /// Gravity and loads at `time` on the current positions [N].

@@ -8,7 +8,7 @@ mod sym3;
 mod vec3;
 
 pub use dual::Dual;
-pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level, gather, scatter_add};
+pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level};
 pub use mat3::Mat3;
 pub use real::Real;
 pub use sym3::Sym3;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::gauss::gauss_jacobians;
+use super::groups::Groups;
 use super::{HEX_EDGES, HEX_FACES, HexMesh, Mesh, MeshError, MeshReport, Point, TET_EDGES, TET_FACES, TetMesh};
 use crate::math::Mat3;
 
@@ -115,17 +116,17 @@ fn repeated_corner<const CORNERS: usize>(mut corners: [u32; CORNERS]) -> Option<
 
 /// Cells with the corners of an earlier cell, in whatever order.
 fn repeated_cells<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) -> Vec<MeshError> {
-    let mut first_with = HashMap::with_capacity(mesh.cells.len());
-    let mut errors = Vec::new();
-    for (cell, &corners) in mesh.cells.iter().enumerate() {
+    let sorted = |(cell, &corners): (usize, &[u32; CORNERS])| {
         let mut key = corners;
         key.sort_unstable();
-        let first = *first_with.entry(key).or_insert(cell);
-        if first != cell {
-            errors.push(MeshError::DuplicateCell { cell, first });
-        }
-    }
-    errors
+        (key, cell)
+    };
+    let mut keys: Vec<_> = mesh.cells.iter().enumerate().map(sorted).collect();
+    keys.sort_unstable();
+    let alike = keys.chunk_by(|(a, _), (b, _)| a == b);
+    let mut pairs: Vec<_> = alike.flat_map(|run| run[1..].iter().map(|&(_, cell)| (cell, run[0].1))).collect();
+    pairs.sort_unstable();
+    pairs.into_iter().map(|(cell, first)| MeshError::DuplicateCell { cell, first }).collect()
 }
 
 fn remove_isolated_nodes<const CORNERS: usize, const FACE: usize>(
@@ -164,20 +165,11 @@ fn remove_isolated_nodes<const CORNERS: usize, const FACE: usize>(
 
 /// Counts parts that share no node; every node must be in a cell.
 fn count_components<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) -> usize {
-    fn root(parents: &mut [u32], mut node: u32) -> u32 {
-        while parents[node as usize] != node {
-            parents[node as usize] = parents[parents[node as usize] as usize];
-            node = parents[node as usize];
-        }
-        node
-    }
-    let mut parents: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    let mut groups = Groups::new(mesh.nodes.len());
     let mut components = mesh.nodes.len();
     for corners in &mesh.cells {
         for &corner in &corners[1..] {
-            let (a, b) = (root(&mut parents, corners[0]), root(&mut parents, corner));
-            components -= usize::from(a != b);
-            parents[a.max(b) as usize] = a.min(b);
+            components -= usize::from(groups.join(corners[0] as usize, corner as usize));
         }
     }
     components
@@ -187,15 +179,14 @@ fn count_overshared<const CORNERS: usize, const FACE: usize>(
     mesh: &Mesh<CORNERS, FACE>,
     faces: &[[usize; FACE]],
 ) -> usize {
-    let mut uses: HashMap<[u32; FACE], u32> = HashMap::with_capacity(mesh.cells.len() * faces.len() / 2);
-    for corners in &mesh.cells {
-        for face in faces {
-            let mut key = face.map(|corner| corners[corner]);
-            key.sort_unstable();
-            *uses.entry(key).or_default() += 1;
-        }
-    }
-    uses.values().filter(|&&uses| uses > 2).count()
+    let sorted = |corners: &[u32; CORNERS], face: &[usize; FACE]| {
+        let mut key = face.map(|corner| corners[corner]);
+        key.sort_unstable();
+        key
+    };
+    let mut keys: Vec<_> = mesh.cells.iter().flat_map(|cell| faces.iter().map(|face| sorted(cell, face))).collect();
+    keys.sort_unstable();
+    keys.chunk_by(|a, b| a == b).filter(|run| run.len() > 2).count()
 }
 
 /// Finds nodes within `distance` of an earlier one. Space is cut into boxes twice as wide, so that whatever is near a node

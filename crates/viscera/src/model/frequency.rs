@@ -9,14 +9,14 @@ use crate::material::{Law, LawFamily, LawVisitor, Tissue};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 use crate::mesh::{GaussRule, HexMesh, TetMesh, VolumeMesh};
 
-use super::ModelError;
 use super::block_table::BlockTable;
 use super::tet_loop::{RestTet, TetConstants, TetLoop, TetMeasure};
+use super::{ModelError, Scratch};
 
 /// Bounds ω_max² of a body.
 pub trait FrequencyBound<T: Scalar>: Send + Sync {
     /// Upper bound of ω_max² at positions `x` [1/s²]; 0 for a body without cells.
-    fn squared_frequency(&self, x: &[Vec3<T>]) -> f64;
+    fn squared_frequency(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> f64;
     /// Takes cells out.
     fn remove(&mut self, cells: &[u32]);
     /// A copy, for snapshots.
@@ -159,8 +159,8 @@ fn tet_bound<T: Scalar, L: LawFamily>(
 }
 
 impl<T: Scalar, L: LawFamily> FrequencyBound<T> for TetLoop<T, FrequencyMeasure<L>> {
-    fn squared_frequency(&self, x: &[Vec3<T>]) -> f64 {
-        self.largest(x).to_f64()
+    fn squared_frequency(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> f64 {
+        self.largest(x, scratch).to_f64()
     }
 
     fn remove(&mut self, cells: &[u32]) {
@@ -206,7 +206,7 @@ impl<L: LawFamily> HexBound<L> {
 }
 
 impl<T: Scalar, L: LawFamily> FrequencyBound<T> for HexBound<L> {
-    fn squared_frequency(&self, x: &[Vec3<T>]) -> f64 {
+    fn squared_frequency(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>) -> f64 {
         self.cells
             .iter()
             .filter(|cell| cell.per_stiffness > 0.0)

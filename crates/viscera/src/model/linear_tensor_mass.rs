@@ -73,7 +73,7 @@ struct LinearModel<T: Scalar> {
 
 impl<T: Scalar> LinearModel<T> {
     /// f = K u for the displacements in `nodal`.
-    fn add_stiffness_times(&self, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+    fn add_stiffness_times(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
         self.vertices.add_forces::<false>(nodal, out);
         self.edges.add_forces::<false>(nodal, out);
     }
@@ -85,18 +85,20 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        for ((slot, &x), &rest) in scratch.nodal.iter_mut().zip(x).zip(&self.rest) {
-            let u = x - rest;
-            *slot = [u.x, u.y, u.z, T::ONE];
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        for (row, rest) in nodal.iter_mut().zip(&self.rest) {
+            *row = [row[0] - rest.x, row[1] - rest.y, row[2] - rest.z, T::ONE];
         }
-        self.add_stiffness_times(&scratch.nodal, out);
+        self.add_stiffness_times(nodal, forces);
+        scratch.finish(out);
     }
 
     fn add_product(&self, _x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        for (slot, dx) in scratch.nodal.iter_mut().zip(dx) {
-            *slot = [dx.x, dx.y, dx.z, T::ONE];
-        }
-        self.add_stiffness_times(&scratch.nodal, out);
+        scratch.start(dx);
+        let Scratch { nodal, forces, .. } = scratch;
+        self.add_stiffness_times(nodal, forces);
+        scratch.finish(out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -55,19 +55,49 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     fn clone_box(&self) -> Box<dyn ForceModel<T>>;
 }
 
-/// Memory that models use while they compute and that means nothing between calls.
+/// Memory that models use while they compute and that means nothing between calls: nodal arrays, four numbers to a node,
+/// so that lanes load and store whole rows.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch<T> {
-    /// Per node: three components, and a fourth number that is the model's own.
+    /// Places or displacements; the fourth number is the model's own.
     pub(crate) nodal: Vec<[T; 4]>,
-    /// A second such array.
-    pub(crate) nodal_direction: Vec<[T; 4]>,
+    /// Directions of a derivative.
+    pub(crate) direction: Vec<[T; 4]>,
+    /// Sums of forces.
+    pub(crate) forces: Vec<[T; 4]>,
 }
 
 impl<T: Scalar> Scratch<T> {
     /// Scratch for a body of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
-        Self { nodal: vec![[T::ZERO; 4]; nodes], nodal_direction: vec![[T::ZERO; 4]; nodes] }
+        let rows = || vec![[T::ZERO; 4]; nodes];
+        Self { nodal: rows(), direction: rows(), forces: rows() }
+    }
+
+    /// Fills the places with `x` and clears the forces.
+    pub(crate) fn start(&mut self, x: &[Vec3<T>]) {
+        fill(&mut self.nodal, x);
+        self.forces.fill([T::ZERO; 4]);
+    }
+
+    /// Fills the directions with `dx`.
+    pub(crate) fn start_direction(&mut self, dx: &[Vec3<T>]) {
+        fill(&mut self.direction, dx);
+    }
+
+    /// Adds the forces to `out`.
+    pub(crate) fn finish(&self, out: &mut [Vec3<T>]) {
+        assert_eq!(self.forces.len(), out.len(), "arrays and scratch must be those of the model's mesh");
+        for (out, &[x, y, z, _]) in out.iter_mut().zip(&self.forces) {
+            *out += Vec3::new(x, y, z);
+        }
+    }
+}
+
+fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
+    assert_eq!(rows.len(), vectors.len(), "arrays and scratch must be those of the model's mesh");
+    for (row, v) in rows.iter_mut().zip(vectors) {
+        *row = [v.x, v.y, v.z, T::ZERO];
     }
 }
 

@@ -4,9 +4,9 @@ use std::marker::PhantomData;
 
 use fearless_simd::{Simd, dispatch};
 
-use super::ModelError;
 use super::block_table::BlockTable;
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level, gather, scatter_add};
+use super::{ModelError, Scratch};
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level};
 use crate::mesh::{MeshError, TetMesh};
 
 /// The most constants that a kernel may keep for an element.
@@ -123,12 +123,13 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
 
 impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
     /// The largest measure of all tetrahedra, and 0 if there is none above.
-    pub(crate) fn largest(&self, x: &[Vec3<T>]) -> T {
-        dispatch!(dispatch_level(), simd => self.largest_with(simd, x))
+    pub(crate) fn largest(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> T {
+        scratch.start(x);
+        dispatch!(dispatch_level(), simd => self.largest_with(simd, &scratch.nodal))
     }
 
     #[inline(always)]
-    fn largest_with<S: Simd>(&self, simd: S, x: &[Vec3<T>]) -> T {
+    fn largest_with<S: Simd>(&self, simd: S, x: &[[T; 4]]) -> T {
         let mut largest = T::Lanes::<S>::splat(simd, T::ZERO);
         for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
             let constants = load_constants::<T, S, K>(simd, constants);
@@ -141,12 +142,15 @@ impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
 }
 
 impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
-    pub(crate) fn add_forces(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
-        dispatch!(dispatch_level(), simd => self.add_forces_with(simd, x, out));
+    pub(crate) fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_forces_with(simd, nodal, forces));
+        scratch.finish(out);
     }
 
     #[inline(always)]
-    fn add_forces_with<S: Simd>(&self, simd: S, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+    fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], out: &mut [[T; 4]]) {
         for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
             let constants = load_constants::<T, S, K>(simd, constants);
             let d = gather_edges(simd, x, nodes);
@@ -154,12 +158,16 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         }
     }
 
-    pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
-        dispatch!(dispatch_level(), simd => self.add_product_with(simd, x, dx, out));
+    pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        scratch.start_direction(dx);
+        let Scratch { nodal, direction, forces } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
+        scratch.finish(out);
     }
 
     #[inline(always)]
-    fn add_product_with<S: Simd>(&self, simd: S, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
+    fn add_product_with<S: Simd>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
         for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
             let constants = load_constants::<T, S, K>(simd, constants);
             let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
@@ -193,20 +201,43 @@ fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> 
 
 /// Edge matrices of a batch; `nodes` holds the four corners, corner after corner.
 #[inline(always)]
-fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[Vec3<T>], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
-    let origin = gather(simd, x, &nodes[..T::LANES]);
+fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
+    let origin = gather_corner(simd, x, nodes, 0);
     Mat3::from_columns(
-        gather(simd, x, &nodes[T::LANES..]) - origin,
-        gather(simd, x, &nodes[2 * T::LANES..]) - origin,
-        gather(simd, x, &nodes[3 * T::LANES..]) - origin,
+        gather_corner(simd, x, nodes, 1) - origin,
+        gather_corner(simd, x, nodes, 2) - origin,
+        gather_corner(simd, x, nodes, 3) - origin,
     )
 }
 
+/// Places of one corner of a batch; `nodes` holds the corners of the batch, corner after corner.
 #[inline(always)]
-fn scatter_forces<T: Scalar, S: Simd>(_simd: S, forces: Mat3<T::Lanes<S>>, nodes: &[u32], out: &mut [Vec3<T>]) {
+pub(crate) fn gather_corner<T: Scalar, S: Simd>(
+    simd: S,
+    x: &[[T; 4]],
+    nodes: &[u32],
+    corner: usize,
+) -> Vec3<T::Lanes<S>> {
+    let [x, y, z, _] = T::Lanes::<S>::gather(simd, x, &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    Vec3::new(x, y, z)
+}
+
+/// Adds a force on one corner of a batch.
+#[inline(always)]
+pub(crate) fn scatter_corner<T: Scalar, S: Simd>(
+    force: Vec3<T::Lanes<S>>,
+    nodes: &[u32],
+    corner: usize,
+    out: &mut [[T; 4]],
+) {
+    T::Lanes::<S>::scatter_add(force.to_array(), &nodes[corner * T::LANES..(corner + 1) * T::LANES], out);
+}
+
+#[inline(always)]
+fn scatter_forces<T: Scalar, S: Simd>(_simd: S, forces: Mat3<T::Lanes<S>>, nodes: &[u32], out: &mut [[T; 4]]) {
     let [f1, f2, f3] = forces.columns;
-    scatter_add::<T, S>(-(f1 + f2 + f3), &nodes[..T::LANES], out);
-    scatter_add::<T, S>(f1, &nodes[T::LANES..], out);
-    scatter_add::<T, S>(f2, &nodes[2 * T::LANES..], out);
-    scatter_add::<T, S>(f3, &nodes[3 * T::LANES..], out);
+    scatter_corner::<T, S>(-(f1 + f2 + f3), nodes, 0, out);
+    scatter_corner::<T, S>(f1, nodes, 1, out);
+    scatter_corner::<T, S>(f2, nodes, 2, out);
+    scatter_corner::<T, S>(f3, nodes, 3, out);
 }

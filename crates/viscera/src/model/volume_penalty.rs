@@ -87,12 +87,12 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
         "volume-penalty"
     }
 
-    fn add_forces(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.tets.add_forces(x, out);
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.add_forces(x, scratch, out);
     }
 
-    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.tets.add_product(x, dx, out);
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.add_product(x, dx, scratch, out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

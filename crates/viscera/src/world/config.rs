@@ -50,7 +50,7 @@ impl WorldConfig {
 
 impl<T: Scalar> World<T> {
     /// Refuses a fixed sub-step at which the body would blow up.
-    pub(super) fn check_substep(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
+    pub(super) fn check_substep(&self, body: &mut SimulatedBody<T>) -> Result<(), WorldError> {
         let stable = body.stable_step();
         match self.config.substep {
             Substep::Fixed(substep) if substep > stable => {

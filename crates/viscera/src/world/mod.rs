@@ -60,8 +60,8 @@ impl<T: Scalar> World<T> {
     /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
     /// at the fixed sub-step that was asked for, with the number that would do.
     pub fn add(&mut self, body: Body<T>) -> Result<BodyId, WorldError> {
-        let body = SimulatedBody::new(body)?;
-        self.check_substep(&body)?;
+        let mut body = SimulatedBody::new(body)?;
+        self.check_substep(&mut body)?;
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
         self.bodies.push(body);

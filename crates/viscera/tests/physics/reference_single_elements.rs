@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 use viscera::material::{Lame, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
+use viscera::mesh::GaussRule;
 use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
-use viscera::model::total_lagrangian::GaussRule;
 use viscera::model::{ForceModel, ModelRecipe, TotalLagrangian};
 
 use crate::support::{Evaluate, Reference, Vector, assert_close, assert_near, models, number, plain, vector, vectors};

@@ -6,8 +6,9 @@ use fearless_simd::{Simd, dispatch};
 
 use super::entity::{Corner, Entity, MAX_COLUMNS};
 use super::tensors::TetTensors;
-use crate::math::{Dual, Lanes, MAX_LANES, Real, Scalar, Vec3, dispatch_level, scatter_add};
+use crate::math::{Dual, Lanes, Real, Scalar, Vec3, dispatch_level};
 use crate::model::block_table::BlockTable;
+use crate::model::tet_loop::scatter_corner;
 
 /// All entities of one kind, with the sums of the tensors of the tetrahedra that touch them.
 #[derive(Debug)]
@@ -85,12 +86,12 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     /// Adds the forces at the displacements and weights in `nodal`.
     ///
     /// `ADAPTIVE` tells that weights may be 0: a batch whose corners are all linear is spared the non-linear part.
-    pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+    pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
         dispatch!(dispatch_level(), simd => self.add_forces_with::<_, ADAPTIVE>(simd, nodal, out));
     }
 
     #[inline(always)]
-    fn add_forces_with<S: Simd, const ADAPTIVE: bool>(&self, simd: S, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+    fn add_forces_with<S: Simd, const ADAPTIVE: bool>(&self, simd: S, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
         for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
             let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
@@ -114,12 +115,12 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     }
 
     /// Adds the derivative of the forces along the displacements in `direction`, weights held.
-    pub(crate) fn add_product(&self, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [Vec3<T>]) {
+    pub(crate) fn add_product(&self, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [[T; 4]]) {
         dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, out));
     }
 
     #[inline(always)]
-    fn add_product_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [Vec3<T>]) {
+    fn add_product_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [[T; 4]]) {
         for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
             let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
@@ -181,14 +182,8 @@ fn gather_corners<T: Scalar, S: Simd, const NODES: usize>(
     let zero = T::Lanes::<S>::splat(simd, T::ZERO);
     let mut corners = [Corner { u: Vec3::splat(zero), weight: zero }; NODES];
     for node in 0..NODES {
-        let mut columns = [[T::ZERO; MAX_LANES]; 4];
-        for (lane, &index) in nodes[node * T::LANES..(node + 1) * T::LANES].iter().enumerate() {
-            let value = nodal[index as usize];
-            for column in 0..4 {
-                columns[column][lane] = value[column];
-            }
-        }
-        let [x, y, z, weight] = columns.map(|column| T::Lanes::<S>::load(simd, &column));
+        let at = &nodes[node * T::LANES..(node + 1) * T::LANES];
+        let [x, y, z, weight] = T::Lanes::<S>::gather(simd, nodal, at);
         corners[node] = Corner { u: Vec3::new(x, y, z), weight };
     }
     corners
@@ -216,9 +211,9 @@ fn scatter_corners<T: Scalar, S: Simd, const NODES: usize>(
     _simd: S,
     forces: [Vec3<T::Lanes<S>>; NODES],
     nodes: &[u32],
-    out: &mut [Vec3<T>],
+    out: &mut [[T; 4]],
 ) {
     for node in 0..NODES {
-        scatter_add::<T, S>(forces[node], &nodes[node * T::LANES..], out);
+        scatter_corner::<T, S>(forces[node], nodes, node, out);
     }
 }

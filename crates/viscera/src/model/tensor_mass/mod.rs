@@ -103,16 +103,16 @@ struct TensorMassModel<T: Scalar> {
 }
 
 impl<T: Scalar> TensorMassModel<T> {
-    /// Displacements, and the weight of the non-linear part.
-    fn fill_displacements(&self, x: &[Vec3<T>], nodal: &mut [[T; 4]]) {
-        for ((slot, &x), &rest) in nodal.iter_mut().zip(x).zip(&self.rest) {
-            let u = x - rest;
+    /// Makes displacements of places, and sets the weight of the non-linear part.
+    fn subtract_rest(&self, nodal: &mut [[T; 4]]) {
+        for (row, rest) in nodal.iter_mut().zip(&self.rest) {
+            let u = Vec3::new(row[0], row[1], row[2]) - *rest;
             let weight = if self.is_nonlinear_at(u) { T::ONE } else { T::ZERO };
-            *slot = [u.x, u.y, u.z, weight];
+            *row = [u.x, u.y, u.z, weight];
         }
     }
 
-    fn add_forces_at<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [Vec3<T>]) {
+    fn add_forces_at<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
         self.vertices.add_forces::<ADAPTIVE>(nodal, out);
         self.edges.add_forces::<ADAPTIVE>(nodal, out);
         self.triangles.add_forces::<ADAPTIVE>(nodal, out);
@@ -126,23 +126,26 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.fill_displacements(x, &mut scratch.nodal);
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        self.subtract_rest(nodal);
         match self.squared_threshold {
-            Some(_) => self.add_forces_at::<true>(&scratch.nodal, out),
-            None => self.add_forces_at::<false>(&scratch.nodal, out),
+            Some(_) => self.add_forces_at::<true>(nodal, forces),
+            None => self.add_forces_at::<false>(nodal, forces),
         }
+        scratch.finish(out);
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.fill_displacements(x, &mut scratch.nodal);
-        for (slot, dx) in scratch.nodal_direction.iter_mut().zip(dx) {
-            *slot = [dx.x, dx.y, dx.z, T::ZERO];
-        }
-        let Scratch { nodal, nodal_direction } = scratch;
-        self.vertices.add_product(nodal, nodal_direction, out);
-        self.edges.add_product(nodal, nodal_direction, out);
-        self.triangles.add_product(nodal, nodal_direction, out);
-        self.tetrahedra.add_product(nodal, nodal_direction, out);
+        scratch.start(x);
+        scratch.start_direction(dx);
+        let Scratch { nodal, direction, forces } = scratch;
+        self.subtract_rest(nodal);
+        self.vertices.add_product(nodal, direction, forces);
+        self.edges.add_product(nodal, direction, forces);
+        self.triangles.add_product(nodal, direction, forces);
+        self.tetrahedra.add_product(nodal, direction, forces);
+        scratch.finish(out);
     }
 
     /// Energy of the full law, also where an adaptive model is linear.

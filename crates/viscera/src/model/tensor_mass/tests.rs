@@ -160,12 +160,12 @@ impl Tables {
 
     fn forces(&self, u: &[Vec3<f64>], scale: f64) -> Vec<Vec3<f64>> {
         let nodal: Vec<[f64; 4]> = u.iter().map(|&u| [u.x * scale, u.y * scale, u.z * scale, 1.0]).collect();
-        let mut out = vec![Vec3::ZERO; u.len()];
-        self.vertices.add_forces::<false>(&nodal, &mut out);
-        self.edges.add_forces::<false>(&nodal, &mut out);
-        self.triangles.add_forces::<false>(&nodal, &mut out);
-        self.tetrahedra.add_forces::<false>(&nodal, &mut out);
-        out
+        let mut rows = vec![[0.0; 4]; u.len()];
+        self.vertices.add_forces::<false>(&nodal, &mut rows);
+        self.edges.add_forces::<false>(&nodal, &mut rows);
+        self.triangles.add_forces::<false>(&nodal, &mut rows);
+        self.tetrahedra.add_forces::<false>(&nodal, &mut rows);
+        rows.into_iter().map(|[x, y, z, _]| Vec3::new(x, y, z)).collect()
     }
 
     fn remove(&mut self, cell: usize) {

@@ -7,10 +7,11 @@ use std::marker::PhantomData;
 use fearless_simd::{Simd, dispatch};
 
 use super::super::block_table::BlockTable;
+use super::super::tet_loop::{gather_corner, scatter_corner};
 use super::super::{ForceModel, ModelError, Scratch};
 use super::TotalLagrangian;
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level, gather, scatter_add};
+use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 
 /// Numbers stored for a Gauss point: eight gradients and a volume.
@@ -74,7 +75,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
 
     /// For every batch and Gauss point, adds V · stress · gradients to the corners; `stress` sees the law and F.
     #[inline(always)]
-    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[Vec3<T>], dx: &[Vec3<T>], out: &mut [Vec3<T>]) {
+    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
         let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
         for ((nodes, points), parameters) in blocks {
             let zero = T::Lanes::<S>::splat(simd, T::ZERO);
@@ -97,17 +98,17 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
                 }
             }
             for corner in 0..8 {
-                scatter_add::<T, S>(forces[corner], &nodes[corner * T::LANES..], out);
+                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
             }
         }
     }
 }
 
 #[inline(always)]
-fn gather_corners<T: Scalar, S: Simd>(simd: S, x: &[Vec3<T>], nodes: &[u32]) -> [Vec3<T::Lanes<S>>; 8] {
+fn gather_corners<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> [Vec3<T::Lanes<S>>; 8] {
     let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
     for corner in 0..8 {
-        corners[corner] = gather(simd, x, &nodes[corner * T::LANES..]);
+        corners[corner] = gather_corner(simd, x, nodes, corner);
     }
     corners
 }
@@ -137,12 +138,19 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
         TotalLagrangian::INFO.name
     }
 
-    fn add_forces(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, x, x, out));
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
+        scratch.finish(out);
     }
 
-    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, x, dx, out));
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        scratch.start_direction(dx);
+        let Scratch { nodal, direction, forces } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+        scratch.finish(out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

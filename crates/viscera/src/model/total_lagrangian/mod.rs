@@ -118,12 +118,12 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         TotalLagrangian::INFO.name
     }
 
-    fn add_forces(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.tets.add_forces(x, out);
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.add_forces(x, scratch, out);
     }
 
-    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], _scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.tets.add_product(x, dx, out);
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.add_product(x, dx, scratch, out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -2,8 +2,8 @@
 
 use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use viscera::math::{Scalar, Vec3};
+use viscera::mesh::GaussRule;
 use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
-use viscera::model::total_lagrangian::GaussRule;
 use viscera::model::{ForceModel, ModelKind, ModelRecipe, Scratch, TotalLagrangian, VolumePenalty};
 
 use super::{Matrix, Random, Vector};
