@@ -17,6 +17,7 @@ mod signed_distance;
 mod surface_check;
 mod surface_filling;
 mod surface_mesh;
+mod thickening;
 mod topology;
 mod triangle_tree;
 mod volume_mesh;
