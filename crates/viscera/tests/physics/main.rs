@@ -18,5 +18,6 @@ mod model_removal;
 mod reference_patch;
 mod reference_single_elements;
 mod reference_volume_penalty;
+mod rotation;
 mod support;
 mod topology;
