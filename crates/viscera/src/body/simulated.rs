@@ -2,7 +2,7 @@ use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, N
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
-use crate::model::frequency::{FrequencyBound, frequency_bound};
+use crate::model::frequency::FrequencyBound;
 use crate::model::{ModelKind, Scratch, VolumePenalty};
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
@@ -62,7 +62,7 @@ impl<T: Scalar> SimulatedBody<T> {
             let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
             models.push(Box::new(VolumePenalty::new(tets, keep_volume).map_err(model_error)?));
         }
-        let frequency = frequency_bound(&mesh, recipe.tissue(), &density, keep_volume).map_err(model_error)?;
+        let frequency = recipe.frequency_bound(&mesh, &density, keep_volume).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
@@ -95,7 +95,7 @@ impl<T: Scalar> SimulatedBody<T> {
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
-            scratch: Scratch::new(mesh.nodes().len()),
+            scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),
