@@ -3,7 +3,7 @@ use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
-use crate::model::{ModelKind, Scratch, VolumePenalty};
+use crate::model::{ModelKind, Precision, Scratch};
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -50,19 +50,22 @@ pub struct SurfaceTriangle {
 }
 
 impl<T: Scalar> SimulatedBody<T> {
-    pub(crate) fn new(body: Body<T>) -> Result<Self, BodyError> {
+    pub(crate) fn new(body: Body) -> Result<Self, BodyError>
+    where
+        T: Precision,
+    {
         let Body { name, mesh, density, model, keep_volume, damping, fixed, prescribed, loads, loose_pieces } = body;
         let body = || name.clone();
         check_range(&name, "damping", damping, damping >= 0.0, "zero or positive [1/s]")?;
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
-        let mut models = vec![recipe.build(&mesh).map_err(model_error)?];
+        let mut models = vec![T::build_model(recipe.as_ref(), &mesh).map_err(model_error)?];
         if keep_volume != 0.0 {
             let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
-            models.push(Box::new(VolumePenalty::new(tets, keep_volume).map_err(model_error)?));
+            models.push(T::build_volume_penalty(tets, keep_volume).map_err(model_error)?);
         }
-        let frequency = recipe.frequency_bound(&mesh, &density, keep_volume).map_err(model_error)?;
+        let frequency = T::build_frequency_bound(recipe.as_ref(), &mesh, &density, keep_volume).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };

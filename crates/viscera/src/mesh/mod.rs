@@ -27,7 +27,7 @@ pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
 pub use mesh_report::MeshReport;
 pub use quality::{QualityReport, Spread, TetQuality, scaled_jacobian};
 pub use region::NamedRegion;
-pub use select::{Region, RegionError};
+pub use select::{LoadTriangle, Region, RegionError};
 pub use signed_distance::SignedDistance;
 pub use surface_check::{Hole, NonManifoldEdge, SurfaceError, SurfaceReport};
 pub use surface_filling::FillingReport;

@@ -1,10 +1,11 @@
-//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
+//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; `registry.rs` is the only list of them.
 
 mod block_table;
 pub mod corotational;
 mod error;
 pub mod frequency;
 pub mod linear_tensor_mass;
+mod precision;
 mod registry;
 pub mod tensor_mass;
 mod tet_loop;
@@ -14,6 +15,7 @@ pub mod volume_penalty;
 pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
+pub use precision::Precision;
 pub use registry::{Claims, ModelInfo, ModelKind};
 pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
@@ -137,30 +139,49 @@ fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
 }
 
 /// What is needed to build a model for a mesh: what the user writes.
-pub trait ModelRecipe<T: Scalar>: std::fmt::Debug + Send + Sync {
+pub trait ModelRecipe: std::fmt::Debug + Send + Sync {
     /// The kind of model.
     fn kind(&self) -> ModelKind;
 
     /// The tissue that it is made of.
     fn tissue(&self) -> &Tissue;
 
-    /// Builds the model.
+    /// Builds the model in single precision.
     ///
     /// # Errors
     /// [`ModelError`] where the model supports neither the law nor the cells, or a cell has no volume.
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError>;
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError>;
 
-    /// The bound of the body's highest frequency, for one density [kg/m³] or one for each cell, and the volume-keeping
-    /// stiffness κ [Pa]. That of the law, unless the model makes something else of it.
+    /// Builds the model in double precision.
+    ///
+    /// # Errors
+    /// As [`ModelRecipe::build_single`].
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError>;
+
+    /// The bound of the body's highest frequency in single precision, for one density [kg/m³] or one for each cell, and the
+    /// volume-keeping stiffness κ [Pa]. That of the law, unless the model makes something else of it.
     ///
     /// # Errors
     /// [`ModelError::Mesh`] for a cell without volume.
-    fn frequency_bound(
+    fn bound_single(
         &self,
         mesh: &VolumeMesh,
         density: &[f64],
         keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
+    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
+        frequency_bound(mesh, self.tissue(), density, keep_volume)
+    }
+
+    /// The same in double precision.
+    ///
+    /// # Errors
+    /// As [`ModelRecipe::bound_single`].
+    fn bound_double(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
         frequency_bound(mesh, self.tissue(), density, keep_volume)
     }
 }

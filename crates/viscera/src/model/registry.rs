@@ -2,7 +2,6 @@
 
 use super::{Corotational, LinearTensorMass, ModelRecipe, StiffnessWarping, TensorMass, TotalLagrangian};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
-use crate::math::Scalar;
 
 /// What a user should know about a model before choosing it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +93,7 @@ macro_rules! models {
             }
 
             /// The model with its default settings, for this tissue.
-            pub fn recipe<T: Scalar>(self, tissue: Tissue) -> Box<dyn ModelRecipe<T>> {
+            pub fn recipe(self, tissue: Tissue) -> Box<dyn ModelRecipe> {
                 match self {
                     $(Self::$recipe => Box::new($recipe::new(tissue)),)+
                 }

@@ -104,16 +104,8 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Current volumes of the cells that are left, with their volumes at rest [m³].
     fn volumes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
-        let volume = move |cell: usize| match &self.mesh {
-            VolumeMesh::Tet(mesh) => {
-                let [a, b, c, d] = mesh.cells[cell].map(place);
-                (b - a).dot((c - a).cross(d - a)) / 6.0
-            }
-            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
-        };
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
-        left.map(move |cell| (volume(cell), self.cell_volumes[cell]))
+        left.map(|cell| (self.cell_volume(cell), self.cell_volumes[cell]))
     }
 
     /// Torque of the internal forces about the centre of mass [N m].

@@ -38,7 +38,7 @@ impl Variant {
     }
 
     fn build(self, tissue: &Tissue, mesh: &VolumeMesh, tangent: Tangent) -> Box<dyn ForceModel<f64>> {
-        self.recipe(tissue, tangent).build(mesh).unwrap()
+        self.recipe(tissue, tangent).build_double(mesh).unwrap()
     }
 
     fn updated(self) -> bool {
@@ -93,7 +93,7 @@ fn a_single_tetrahedron_has_the_forces_of_the_reference_in_every_variant() {
         assert_near(&forces, &expected, reference.tolerance(), format!("{variant:?}"));
     }
     let energy = number(&reference.data["reference"]["polar"]["energy_B_not_updated_J"]);
-    let model = Corotational::new(tissue).build(&mesh).unwrap() as Box<dyn ForceModel<f64>>;
+    let model = Corotational::new(tissue).build_double(&mesh).unwrap() as Box<dyn ForceModel<f64>>;
     assert_close(model.energy(&x), energy, reference.tolerance(), "energy");
 }
 
@@ -126,7 +126,7 @@ fn torques_of_the_single_tetrahedron_are_those_of_the_reference() {
     let mesh = VolumeMesh::from(TetMesh::new(vectors(&tet["X_rest_m"]), vec![[0, 1, 2, 3]]));
     let x = vectors(&tet["x_current_m"]);
     let qr: Box<dyn ForceModel<f64>> =
-        Corotational::new(reference.tissue("linear")).rotation(Rotation::Qr).build(&mesh).unwrap();
+        Corotational::new(reference.tissue("linear")).rotation(Rotation::Qr).build_double(&mesh).unwrap();
     let forces = qr.forces(&x);
     let torque = x.iter().zip(&forces).fold(Vector::ZERO, |sum, (&x, &force)| sum + x.cross(force));
     let expected = vectors(&serde_json::json!([reference.data["reference"]["qr"]["torque_B_not_updated_Nm"]]));
@@ -300,7 +300,7 @@ fn an_inverted_tetrahedron_is_driven_back() {
 #[test]
 fn other_laws_are_refused_with_advice() {
     let tissue = Tissue::uniform(StVenantKirchhoff::new(Lame::from_young_poisson(10e3, 0.3).unwrap()));
-    let error = ModelRecipe::<f64>::build(&Corotational::new(tissue), &tet_mesh([1, 1, 1]).into()).err().unwrap();
+    let error = Corotational::new(tissue).build_double(&tet_mesh([1, 1, 1]).into()).err().unwrap();
     assert_eq!(
         error.to_string(),
         "the model `corotational` cannot compute the law `st-venant-kirchhoff`: it turns small strains; take the law \
@@ -321,7 +321,7 @@ fn a_single_hexahedron_has_the_forces_and_the_torque_of_the_reference() {
     let data = &reference.data["reference"];
     for rotation in [Rotation::Polar, Rotation::Svd] {
         let recipe = Corotational::new(reference.tissue("linear")).rotation(rotation);
-        let model: Box<dyn ForceModel<f64>> = recipe.build(&mesh).unwrap();
+        let model: Box<dyn ForceModel<f64>> = recipe.build_double(&mesh).unwrap();
         let forces = model.forces(&x);
         assert_near(&forces, &vectors(&data["internal_force_N"]), reference.tolerance(), format!("{rotation:?}"));
         let torque = x.iter().zip(&forces).fold(Vector::ZERO, |sum, (&x, &force)| sum + x.cross(force));

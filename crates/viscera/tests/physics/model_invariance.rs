@@ -2,8 +2,9 @@
 //! and the precision, up to its own rounding.
 
 use viscera::material::{LawFamily, LawVisitor, Tissue};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{Mesh, TetMesh, VolumeMesh};
+use viscera::model::Precision;
 
 use crate::support::{
     Evaluate, KEEP_VOLUME, Named, Random, Vector, amplification, assert_close, assert_near, deformed, examples,
@@ -101,7 +102,7 @@ fn in_millimetres(tissue: &Tissue) -> Tissue {
 }
 
 /// Forces in newtons are the same, energies are a thousand times as many N mm, in both precisions.
-fn millimetres_instead_of_metres<T: Scalar>() {
+fn millimetres_instead_of_metres<T: Precision>() {
     let roundings = T::EPSILON.to_f64() / f64::EPSILON;
     let thousand = T::from_f64(1e3);
     for mut mesh in meshes() {

@@ -11,7 +11,10 @@ fn tissue() -> Tissue {
 }
 
 fn models(mesh: &VolumeMesh) -> [Box<dyn ForceModel<f64>>; 2] {
-    [StiffnessWarping::new(tissue()).build(mesh).unwrap(), Corotational::new(tissue()).build(mesh).unwrap()]
+    [
+        StiffnessWarping::new(tissue()).build_double(mesh).unwrap(),
+        Corotational::new(tissue()).build_double(mesh).unwrap(),
+    ]
 }
 
 /// |Σ f| over Σ |f|.

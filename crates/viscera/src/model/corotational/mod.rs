@@ -111,7 +111,7 @@ pub(super) fn check_law(model: ModelKind, tissue: &Tissue) -> Result<(), ModelEr
     Err(ModelError::UnsupportedLaw { model, law: tissue.kind(), advice })
 }
 
-impl<T: Scalar> ModelRecipe<T> for Corotational {
+impl ModelRecipe for Corotational {
     fn kind(&self) -> ModelKind {
         ModelKind::Corotational
     }
@@ -120,21 +120,40 @@ impl<T: Scalar> ModelRecipe<T> for Corotational {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn bound_single(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
+        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
+    }
+
+    fn bound_double(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
+        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
+    }
+}
+
+impl Corotational {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         check_law(ModelKind::Corotational, &self.tissue)?;
         self.tissue.check_count(mesh.cell_count())?;
         match mesh {
             VolumeMesh::Tet(mesh) => Ok(Box::new(CorotationalTets::new(mesh, &self.tissue, self.formulation)?)),
             VolumeMesh::Hex(mesh) => Ok(Box::new(CorotationalHexes::new(mesh, &self.tissue, self.formulation)?)),
         }
-    }
-
-    fn frequency_bound(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
-        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
     }
 }

@@ -53,7 +53,7 @@ impl StiffnessWarping {
     }
 }
 
-impl<T: Scalar> ModelRecipe<T> for StiffnessWarping {
+impl ModelRecipe for StiffnessWarping {
     fn kind(&self) -> ModelKind {
         ModelKind::StiffnessWarping
     }
@@ -62,7 +62,17 @@ impl<T: Scalar> ModelRecipe<T> for StiffnessWarping {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl StiffnessWarping {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::StiffnessWarping;
         check_law(model, &self.tissue)?;
         self.tissue.check_count(mesh.cell_count())?;

@@ -48,7 +48,7 @@ impl TotalLagrangian {
     }
 }
 
-impl<T: Scalar> ModelRecipe<T> for TotalLagrangian {
+impl ModelRecipe for TotalLagrangian {
     fn kind(&self) -> ModelKind {
         ModelKind::TotalLagrangian
     }
@@ -57,7 +57,17 @@ impl<T: Scalar> ModelRecipe<T> for TotalLagrangian {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl TotalLagrangian {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
         let law = self.tissue.kind();
         match mesh {
