@@ -37,7 +37,7 @@ pub fn polar<R: Real>(f: &Mat3<R>) -> Mat3<R> {
         let reduced = root.mul_add(root, one.like(-2.0));
         let value = reduced.mul_add(root, slope).mul_add(root, last);
         let derivative = (reduced + one).mul_add(root * one.like(4.0), slope);
-        root = root - value / derivative;
+        root -= value / derivative;
     }
     let kappa = root.mul_add(root, -one).half();
     let zeta = kappa.mul_add(root, -determinant);
