@@ -85,7 +85,7 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
 
     /// Adds the forces at the displacements and weights in `nodal`.
     ///
-    /// `ADAPTIVE` tells that weights may be 0: a batch whose corners are all linear is spared the non-linear part.
+    /// `ADAPTIVE` tells that weights may be 0: a batch without an entity whose corners are all non-linear is spared that part.
     pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
         dispatch!(dispatch_level(), simd => self.add_forces_with::<_, ADAPTIVE>(simd, nodal, out));
     }
@@ -96,13 +96,14 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
             let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
             let linear = E::linear(&c, &corners);
-            let all_linear = ADAPTIVE && nodes.iter().all(|&node| nodal[node as usize][3] == T::ZERO);
+            let all_linear = ADAPTIVE && !any_nonlinear::<T, NODES>(nodal, nodes);
             let nonlinear = if all_linear { None } else { E::nonlinear(&c, &corners) };
             let mut forces = linear.unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
             if let Some(nonlinear) = nonlinear {
+                let weight = entity_weight(&corners);
                 for node in 0..NODES {
                     forces[node] = if ADAPTIVE {
-                        nonlinear[node].mul_add(corners[node].weight, forces[node])
+                        nonlinear[node].mul_add(weight, forces[node])
                     } else {
                         forces[node] + nonlinear[node]
                     };
@@ -132,9 +133,10 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
             }
             let mut forces = E::linear(&c, &along).unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
             if let Some(nonlinear) = E::nonlinear(&constants, &corners) {
+                let weight = entity_weight(&at);
                 for node in 0..NODES {
                     let [x, y, z] = nonlinear[node].to_array().map(|component| component.derivative);
-                    forces[node] = Vec3::new(x, y, z).mul_add(at[node].weight, forces[node]);
+                    forces[node] = Vec3::new(x, y, z).mul_add(weight, forces[node]);
                 }
             }
             scatter_corners(simd, forces, nodes, out);
@@ -162,6 +164,23 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
         }
         total
     }
+}
+
+/// Weight of an entity's non-linear part: 1 where all its corners are non-linear, 0 elsewhere.
+#[inline(always)]
+fn entity_weight<R: Real, const NODES: usize>(corners: &[Corner<R>; NODES]) -> R {
+    let mut weight = corners[0].weight;
+    for node in 1..NODES {
+        weight = weight * corners[node].weight;
+    }
+    weight
+}
+
+/// Whether any entity of a batch has only non-linear corners.
+#[inline(always)]
+fn any_nonlinear<T: Scalar, const NODES: usize>(nodal: &[[T; 4]], nodes: &[u32]) -> bool {
+    let weight = |lane: usize, node: usize| nodal[nodes[node * T::LANES + lane] as usize][3];
+    (0..T::LANES).any(|lane| (0..NODES).all(|node| weight(lane, node) != T::ZERO))
 }
 
 #[inline(always)]
