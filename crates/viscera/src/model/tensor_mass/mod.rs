@@ -156,7 +156,7 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces } = scratch;
+        let Scratch { nodal, direction, forces, .. } = scratch;
         self.subtract_rest(nodal);
         self.vertices.add_product(nodal, direction, forces);
         self.edges.add_product(nodal, direction, forces);
