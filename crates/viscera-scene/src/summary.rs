@@ -5,6 +5,7 @@ use std::fmt;
 use viscera::body::NodeMotion;
 use viscera::math::Scalar;
 use viscera::mesh::VolumeMesh;
+use viscera::world::BodyId;
 
 use crate::build::BuiltScene;
 use crate::error::SceneErrors;
@@ -93,9 +94,12 @@ impl Scene {
 
 impl<T: Scalar> BuiltScene<T> {
     /// What the scene holds and what it takes to run it.
-    pub fn summary(&self) -> SceneSummary {
+    pub fn summary(&mut self) -> SceneSummary {
+        let ids: Vec<BodyId> = self.bodies.values().copied().collect();
+        let stable: Vec<f64> = ids.into_iter().map(|id| self.world.body_mut(id).stable_step()).collect();
         let file = &self.file;
-        let bodies: Vec<BodySummary> = self.bodies.keys().map(|name| self.body_summary(name)).collect();
+        let named = self.bodies.keys().zip(stable);
+        let bodies: Vec<BodySummary> = named.map(|(name, stable)| self.body_summary(name, stable)).collect();
         let stable = bodies.iter().map(|body| body.stable_step).fold(f64::INFINITY, f64::min);
         SceneSummary {
             title: file.title.clone(),
@@ -109,7 +113,7 @@ impl<T: Scalar> BuiltScene<T> {
         }
     }
 
-    fn body_summary(&self, name: &str) -> BodySummary {
+    fn body_summary(&self, name: &str, stable_step: f64) -> BodySummary {
         let described = &self.file.body[name];
         let body = self.world.body(self.bodies[name]);
         let mesh = body.mesh();
@@ -126,7 +130,7 @@ impl<T: Scalar> BuiltScene<T> {
             mass: body.state().masses.iter().map(|mass| mass.to_f64()).sum(),
             law: body.law().to_owned(),
             model: body.model().to_string(),
-            stable_step: body.stable_step(),
+            stable_step,
             fixed: (count(|motion| motion == NodeMotion::Fixed), fixed),
             prescribed: count(|motion| matches!(motion, NodeMotion::Prescribed(_))),
             loads: described.load.len(),

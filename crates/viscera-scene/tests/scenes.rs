@@ -75,7 +75,7 @@ fn the_resected_lobe_hangs_from_the_grasper_by_its_weight() {
 /// The scene as it stands has the size that a resection is played with.
 #[test]
 fn the_resection_has_six_thousand_tetrahedra_or_more() {
-    let built = scene("liver-resection.toml", &[]).build::<f32>().unwrap_or_else(|errors| panic!("{errors}"));
+    let mut built = scene("liver-resection.toml", &[]).build::<f32>().unwrap_or_else(|errors| panic!("{errors}"));
     let cells = built.summary().bodies[0].cells;
     assert!(cells >= 6000, "{cells} tetrahedra");
 }

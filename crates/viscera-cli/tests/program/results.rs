@@ -22,7 +22,7 @@ fn body<'a>(summary: &'a Value, name: &str) -> &'a Value {
 #[test]
 fn what_is_cut_away_is_missing_in_every_record() {
     let desk = Desk::new();
-    let arguments = ["run", "liver-resection", "--time", "0.8 s", "--set", "body.liver.mesh.edge=26 mm"];
+    let arguments = ["run", "liver-resection", "--time", "1.2 s", "--set", "body.liver.mesh.edge=26 mm"];
     desk.viscera(&[&arguments[..], &["--out", "cut"]].concat()).ends_with(0).says("removed").says("real-time factor");
 
     let summary = desk.json("cut/summary.json");
@@ -33,7 +33,7 @@ fn what_is_cut_away_is_missing_in_every_record() {
     assert_eq!(summary["failure"], Value::Null);
 
     let csv = desk.read("cut/observables.csv");
-    assert_eq!(column(&csv, "time [s]").len(), 81);
+    assert_eq!(column(&csv, "time [s]").len(), 121);
     assert_eq!(column(&csv, "liver: removed cells [1]").last().copied(), Some(removed as f64));
     let force = column(&csv, "grasper: force y [N]");
     assert_eq!(force[0], 0.0, "nothing is held before the jaws close");
@@ -41,11 +41,11 @@ fn what_is_cut_away_is_missing_in_every_record() {
         summary["instruments"][0]["peak_force_N"].as_f64().unwrap() >= force.iter().fold(0.0, |a, &b| a.max(b.abs()))
     );
 
-    // 0.8 s in frames of 40 ms, both ends among them.
+    // 1.2 s in frames of 40 ms, both ends among them.
     let pvd = desk.read("cut/bodies.pvd");
-    assert_eq!(pvd.matches("<DataSet").count(), 21);
-    assert!(pvd.contains("timestep=\"0.8\" group=\"\" part=\"0\" file=\"frames/liver-000020.vtu\""), "{pvd}");
-    let ImportedMesh::Tet(last) = read_mesh(desk.path("cut/frames/liver-000020.vtu"), 1.0).expect("the frame").mesh
+    assert_eq!(pvd.matches("<DataSet").count(), 31);
+    assert!(pvd.contains("timestep=\"1.2\" group=\"\" part=\"0\" file=\"frames/liver-000030.vtu\""), "{pvd}");
+    let ImportedMesh::Tet(last) = read_mesh(desk.path("cut/frames/liver-000030.vtu"), 1.0).expect("the frame").mesh
     else {
         panic!("tetrahedra")
     };

@@ -11,11 +11,12 @@ mod site;
 
 use indexmap::IndexMap;
 use viscera::math::Scalar;
+use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
 use viscera::world::{BodyId, InstrumentId, Integrator, Substep, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
-use crate::file::{SceneFile, SubstepFile};
+use crate::file::{InstrumentFile, SceneFile, SubstepFile};
 use crate::scene::Scene;
 use site::Site;
 
@@ -80,6 +81,14 @@ impl Scene {
         let mut instruments = IndexMap::new();
         for (name, described) in &file.instrument {
             let site = root.key("instrument").key(name);
+            let can_cut = |id: &BodyId| matches!(world.body(*id).mesh(), VolumeMesh::Tet(_));
+            if matches!(described, InstrumentFile::Cautery { .. })
+                && !bodies.is_empty()
+                && !bodies.values().any(can_cut)
+            {
+                let message = "a cautery burns tetrahedra away, and all bodies are made of hexahedra";
+                return Err(site.key("kind").error(message, "make the body of tetrahedra, or leave the cautery out"));
+            }
             instruments.insert(name.clone(), instrument::add(&mut world, described, &site)?);
         }
         Ok(BuiltScene { file, world, bodies, instruments, notices })

@@ -154,3 +154,29 @@ fn a_scene_file_that_is_not_there_is_named() {
     let message = Scene::load("no/such/scene.toml").unwrap_err().to_string();
     assert!(message.starts_with("error: cannot read the scene no/such/scene.toml: "), "{message}");
 }
+
+/// However a scene file is damaged, it is refused with words or accepted: stretches of it are cut out, doubled and moved.
+#[test]
+fn no_damage_makes_the_check_panic() {
+    let mut state = 1_u64;
+    // Knuth's linear congruential generator: the same damages on every machine.
+    let mut pick = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let letters: Vec<char> = SCENE.chars().collect();
+    for _ in 0..2000 {
+        let (from, length, to) = (pick(letters.len()), pick(40), pick(letters.len()));
+        let stretch = &letters[from..letters.len().min(from + length)];
+        let mut damaged = letters.clone();
+        if pick(2) == 0 {
+            damaged.drain(from..letters.len().min(from + length));
+        }
+        let to = to.min(damaged.len());
+        damaged.splice(to..to, stretch.iter().copied());
+        let text: String = damaged.into_iter().collect();
+        if let Err(errors) = Scene::parse(&text, "").and_then(|scene| scene.check()) {
+            assert!(errors.to_string().starts_with("error: "));
+        }
+    }
+}

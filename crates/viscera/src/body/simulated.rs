@@ -81,7 +81,7 @@ impl<T: Scalar> SimulatedBody<T> {
             let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
             models.push(T::build_volume_penalty(tets, keep_volume).map_err(model_error)?);
         }
-        let frequency = T::build_frequency_bound(&mesh, recipe.tissue(), &density, keep_volume).map_err(model_error)?;
+        let frequency = T::build_frequency_bound(recipe.as_ref(), &mesh, &density, keep_volume).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
@@ -115,7 +115,7 @@ impl<T: Scalar> SimulatedBody<T> {
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
-            scratch: Scratch::new(mesh.nodes().len()),
+            scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),

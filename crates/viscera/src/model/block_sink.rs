@@ -8,6 +8,11 @@ use crate::math::{Lanes, MAX_LANES, Mat3, Scalar, Vec3};
 pub trait BlockSink<T> {
     /// Adds `block` at the nodes (`row`, `column`).
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>);
+
+    /// Whether it keeps the blocks of the diagonal only, so that models may leave out the others.
+    fn keeps_diagonal_only(&self) -> bool {
+        false
+    }
 }
 
 /// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
@@ -20,16 +25,31 @@ pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
     elements: usize,
     sink: &mut dyn BlockSink<T>,
 ) {
+    let [x, y, z] = columns;
     for p in 0..CORNERS {
-        let mut numbers = [[[T::ZERO; MAX_LANES]; 3]; 3];
-        for (stored, column) in numbers.iter_mut().zip(columns) {
-            for (stored, component) in stored.iter_mut().zip(column[p].to_array()) {
-                component.store(stored);
-            }
+        if p == corner || !sink.keeps_diagonal_only() {
+            add_block::<T, S>(&Mat3::from_columns(x[p], y[p], z[p]), nodes, [p, corner], elements, sink);
         }
-        let of_corner = |corner: usize| &nodes[corner * T::LANES..(corner + 1) * T::LANES];
-        send(&numbers, of_corner(p), of_corner(corner), elements.min(T::LANES), sink);
     }
+}
+
+/// Gives one block of each element of a batch to `sink`, that of the two `corners`.
+#[inline(always)]
+pub(crate) fn add_block<T: Scalar, S: Simd>(
+    block: &Mat3<T::Lanes<S>>,
+    nodes: &[u32],
+    corners: [usize; 2],
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    let mut numbers = [[[T::ZERO; MAX_LANES]; 3]; 3];
+    for (stored, column) in numbers.iter_mut().zip(block.columns) {
+        for (stored, component) in stored.iter_mut().zip(column.to_array()) {
+            component.store(stored);
+        }
+    }
+    let [rows, columns] = corners.map(|corner| &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    send(&numbers, rows, columns, elements.min(T::LANES), sink);
 }
 
 /// Gives one block of each of the first `elements` lanes to `sink`. Not inlined: the same for every instruction set.

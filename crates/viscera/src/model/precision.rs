@@ -1,6 +1,5 @@
-use super::frequency::{FrequencyBound, frequency_bound};
+use super::frequency::FrequencyBound;
 use super::{ForceModel, ModelError, ModelRecipe, VolumePenalty};
-use crate::material::Tissue;
 use crate::math::Scalar;
 use crate::mesh::{TetMesh, VolumeMesh};
 
@@ -23,17 +22,17 @@ pub trait Precision: Scalar {
     /// Builds the bound of the highest frequency.
     ///
     /// # Errors
-    /// As [`frequency_bound`].
+    /// As [`ModelRecipe::bound_single`].
     fn build_frequency_bound(
+        recipe: &dyn ModelRecipe,
         mesh: &VolumeMesh,
-        tissue: &Tissue,
         density: &[f64],
         keep_volume: f64,
     ) -> Result<Box<dyn FrequencyBound<Self>>, ModelError>;
 }
 
 macro_rules! impl_precision {
-    ($scalar:ty, $build:ident) => {
+    ($scalar:ty, $build:ident, $bound:ident) => {
         impl Precision for $scalar {
             fn build_model(
                 recipe: &dyn ModelRecipe,
@@ -47,16 +46,16 @@ macro_rules! impl_precision {
             }
 
             fn build_frequency_bound(
+                recipe: &dyn ModelRecipe,
                 mesh: &VolumeMesh,
-                tissue: &Tissue,
                 density: &[f64],
                 keep_volume: f64,
             ) -> Result<Box<dyn FrequencyBound<Self>>, ModelError> {
-                frequency_bound::<$scalar>(mesh, tissue, density, keep_volume)
+                recipe.$bound(mesh, density, keep_volume)
             }
         }
     };
 }
 
-impl_precision!(f32, build_single);
-impl_precision!(f64, build_double);
+impl_precision!(f32, build_single, bound_single);
+impl_precision!(f64, build_double, bound_double);

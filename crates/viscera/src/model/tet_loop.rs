@@ -169,7 +169,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces } = scratch;
+        let Scratch { nodal, direction, forces, .. } = scratch;
         dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
         scratch.finish(out);
     }
@@ -255,7 +255,7 @@ fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> 
 
 /// Edge matrices of a batch; `nodes` holds the four corners, corner after corner.
 #[inline(always)]
-fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
+pub(crate) fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
     let origin = gather_corner(simd, x, nodes, 0);
     Mat3::from_columns(
         gather_corner(simd, x, nodes, 1) - origin,
@@ -288,7 +288,12 @@ pub(crate) fn scatter_corner<T: Scalar, S: Simd>(
 }
 
 #[inline(always)]
-fn scatter_forces<T: Scalar, S: Simd>(_simd: S, forces: Mat3<T::Lanes<S>>, nodes: &[u32], out: &mut [[T; 4]]) {
+pub(crate) fn scatter_forces<T: Scalar, S: Simd>(
+    _simd: S,
+    forces: Mat3<T::Lanes<S>>,
+    nodes: &[u32],
+    out: &mut [[T; 4]],
+) {
     let [f1, f2, f3] = forces.columns;
     scatter_corner::<T, S>(-(f1 + f2 + f3), nodes, 0, out);
     scatter_corner::<T, S>(f1, nodes, 1, out);

@@ -64,4 +64,8 @@ impl<T: Scalar> BlockSink<T> for BlockJacobi<T> {
             self.blocks[row as usize] += block;
         }
     }
+
+    fn keeps_diagonal_only(&self) -> bool {
+        true
+    }
 }

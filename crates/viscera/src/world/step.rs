@@ -76,7 +76,11 @@ impl<T: Scalar> World<T> {
     fn move_explicitly(&mut self, span: &Span, substep: Substep) -> Result<Motion, StepError> {
         let mut fastest = self.fastest();
         for retries in 0..=MAX_RETRIES {
-            let substeps = self.plan_substeps(substep, fastest)?;
+            let substeps = match self.plan_substeps(substep, fastest) {
+                // What an attempt that ran away says of stiffness means nothing.
+                Err(StepError::TooStiff { .. }) if retries > 0 => return Err(self.diverged()),
+                plan => plan?,
+            };
             self.grip(span);
             self.advance(span, substeps);
             let finite = self.bodies.iter().all(|body| body.state.is_finite());

@@ -27,7 +27,7 @@ fn blocks_times_a_direction_equal_the_product() {
         let f = random.deformation(0.2);
         let x = deformed(&mesh, f, Vector::ZERO, 1e-3, &mut random);
         let dx = random.vectors(x.len(), 1.0);
-        for (mut named, _) in models_and_penalty::<f64>(&mesh) {
+        for mut named in models_and_penalty::<f64>(&mesh) {
             for removed in [&[][..], &[1, 4]] {
                 named.model.remove(removed);
                 let mut scratch = Scratch::new(x.len());

@@ -19,7 +19,7 @@ fn moved(x: &[Vector], dx: &[Vector], s: f64) -> Vec<Vector> {
 fn rest_holds_itself() {
     for mesh in meshes() {
         let x = mesh.nodes();
-        for (named, _) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
             // what a displacement of one metre would cost, times the roundings of a position
             let stiffness = largest(&named.model.product(x, &Random::new(41).vectors(x.len(), 1.0)));
             let modulus = 1e4 * mesh.size();
@@ -38,7 +38,10 @@ fn forces_are_the_gradient_of_the_energy() {
         let mut random = Random::new(42);
         let x = deformed(&mesh, random.deformation(0.3), random.vector() * 0.1, 0.004, &mut random);
         let h = 1e-3 * mesh.size();
-        for (named, _) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
+            if !named.claims.conservative {
+                continue;
+            }
             let mut slopes = vec![Vector::ZERO; x.len()];
             let mut place = x.clone();
             for node in 0..x.len() {
@@ -67,7 +70,10 @@ fn products_are_the_derivative_of_forces() {
         let x = deformed(&mesh, random.deformation(0.3), random.vector() * 0.1, 0.004, &mut random);
         let dx = random.vectors(x.len(), 1.0);
         let h = 1e-3 * mesh.size();
-        for (named, _) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
+            if !named.claims.exact_products {
+                continue;
+            }
             // δ|δ| is no polynomial where δ changes its sign: a step so small that hardly any cell does
             let (h, tolerance) = if named.name == "volume penalty" { (1e-4 * h, 1e-6) } else { (h, 1e-9) };
             let forces = |s: f64| named.model.forces(&moved(&x, &dx, s * h));
@@ -87,7 +93,10 @@ fn products_are_symmetric() {
         let mut random = Random::new(44);
         let x = deformed(&mesh, random.deformation(0.5), Vector::ZERO, 0.008, &mut random);
         let (a, b) = (random.vectors(x.len(), 1.0), random.vectors(x.len(), 1.0));
-        for (named, _) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
+            if !named.claims.symmetric_products {
+                continue;
+            }
             let (ka, kb) = (named.model.product(&x, &a), named.model.product(&x, &b));
             let scale = (dot(&ka, &ka) * dot(&b, &b)).sqrt();
             let difference = dot(&b, &ka) - dot(&a, &kb);
@@ -104,7 +113,7 @@ fn forces_and_products_are_added_to_what_is_there() {
         let mut random = Random::new(45);
         let x = deformed(&mesh, random.deformation(0.3), Vector::ZERO, 0.004, &mut random);
         let (dx, before) = (random.vectors(x.len(), 1.0), random.vectors(x.len(), 10.0));
-        for (named, _) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
             let mut scratch = Scratch::new(x.len());
             let mut out = before.clone();
             named.model.add_forces(&x, &mut scratch, &mut out);

@@ -17,16 +17,21 @@
 //! Source: Baraff, Witkin, Large steps in cloth simulation (1998); Nesme et al. (2005).
 
 mod backward_euler;
+mod balance;
 mod bdf2;
+mod correction;
 mod energy_momentum;
 mod memory;
 mod newmark;
 mod newton;
+mod report;
 mod scheme;
 mod settings;
+mod step;
 mod tangent;
 
 pub use memory::ImplicitMemory;
-pub use newton::{ImplicitReport, advance};
+pub use report::ImplicitReport;
 pub use scheme::Scheme;
 pub use settings::{Implicit, MatrixForm, Newton};
+pub use step::advance;

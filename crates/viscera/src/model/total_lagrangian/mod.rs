@@ -4,7 +4,7 @@
 //! tetrahedra use the metric form, in which F never appears: about 200 flops an element.
 
 mod direct;
-mod hex;
+pub(super) mod hex;
 mod metric;
 
 use self::direct::Direct;

@@ -4,7 +4,7 @@ use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::GaussRule;
 use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
-use viscera::model::{ForceModel, ModelKind, Precision, Scratch, TotalLagrangian, VolumePenalty};
+use viscera::model::{Claims, ForceModel, ModelKind, Precision, Scratch, TotalLagrangian};
 
 use super::{Matrix, Random, Vector};
 
@@ -12,6 +12,16 @@ use super::{Matrix, Random, Vector};
 pub(crate) struct Named<T> {
     pub(crate) name: String,
     pub(crate) model: Box<dyn ForceModel<T>>,
+    pub(crate) claims: Claims,
+}
+
+impl<T: Precision> Named<T> {
+    /// The volume penalty, which is objective and has an energy.
+    pub(crate) fn penalty(mesh: &TetMesh, kappa: f64) -> Self {
+        let model = T::build_volume_penalty(mesh, kappa).unwrap();
+        let claims = Claims { of_the_law: false, ..Claims::of_law(LawKind::StVenantKirchhoff) };
+        Self { name: "volume penalty".into(), model, claims }
+    }
 }
 
 /// Stiffness of the volume penalty in the suites [Pa]: that of ordinary tissue.
@@ -54,25 +64,28 @@ pub(crate) fn models<T: Precision>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Na
         .map(|kind| Named {
             name: format!("{kind} of {law}"),
             model: T::build_model(kind.recipe(tissue.clone()).as_ref(), mesh).unwrap(),
+            claims: kind.claims(law, hexahedra),
         })
         .collect();
-    models.push(Named { name: format!("plain total-lagrangian of {law}"), model: plain(tissue, mesh) });
+    let claims = Claims::of_law(law);
+    models.push(Named { name: format!("plain total-lagrangian of {law}"), model: plain(tissue, mesh), claims });
     if hexahedra {
         let model = T::build_model(&TotalLagrangian::new(tissue.clone()).gauss(GaussRule::Three), mesh).unwrap();
-        models.push(Named { name: format!("total-lagrangian of {law}, 3×3×3 points"), model });
+        models.push(Named { name: format!("total-lagrangian of {law}, 3×3×3 points"), model, claims });
     }
     models
 }
 
-/// Every model of every law, uniform, and the volume penalty, with whether they are objective.
-pub(crate) fn models_and_penalty<T: Precision>(mesh: &VolumeMesh) -> Vec<(Named<T>, bool)> {
-    let mut all: Vec<_> = examples()
-        .into_iter()
-        .flat_map(|(tissue, objective)| models(&tissue, mesh).into_iter().map(move |model| (model, objective)))
-        .collect();
+/// The models that are another text of this tissue's law.
+pub(crate) fn models_of_the_law<T: Precision>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Named<T>> {
+    models(tissue, mesh).into_iter().filter(|named| named.claims.of_the_law).collect()
+}
+
+/// Every model of every law, uniform, and the volume penalty.
+pub(crate) fn models_and_penalty<T: Precision>(mesh: &VolumeMesh) -> Vec<Named<T>> {
+    let mut all: Vec<_> = examples().iter().flat_map(|(tissue, _)| models(tissue, mesh)).collect();
     if let VolumeMesh::Tet(mesh) = mesh {
-        let model = Box::new(VolumePenalty::<T>::new(mesh, KEEP_VOLUME).unwrap());
-        all.push((Named { name: "volume penalty".into(), model }, true));
+        all.push(Named::penalty(mesh, KEEP_VOLUME));
     }
     all
 }
