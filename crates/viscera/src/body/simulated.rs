@@ -197,6 +197,12 @@ impl<T: Scalar> SimulatedBody<T> {
         self.boundary.surface(&self.state.removed)
     }
 
+    /// Asks for the memory of the state before the last step, for schemes over two steps, and for that of its backup.
+    pub(crate) fn reserve_past(&mut self) {
+        self.state.past.reserve(self.rest.len());
+        self.backup = MotionBackup::new(&self.state);
+    }
+
     /// Brings the internal forces up to date with positions and cells.
     pub(crate) fn update_internal_forces(&mut self) {
         let state = &mut self.state;

@@ -73,7 +73,9 @@ impl<T: Scalar> World<T> {
         let mut body = SimulatedBody::new(body)?;
         self.check_integrator(&body)?;
         if let Integrator::Implicit(settings) = self.config.integrator {
-            body.state.past.reserve(if settings.scheme.needs_past() { body.positions().len() } else { 0 });
+            if settings.scheme.needs_past() {
+                body.reserve_past();
+            }
             self.implicit.push(ImplicitMemory::new(body.mesh(), &settings));
         }
         let cells = body.mesh().cell_count();

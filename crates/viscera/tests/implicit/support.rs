@@ -2,7 +2,7 @@
 
 use viscera::body::Body;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
-use viscera::material::{LawFamily, StVenantKirchhoff, Tissue};
+use viscera::material::{LawFamily, LinearElastic, StVenantKirchhoff, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::{ModelRecipe, Precision, TotalLagrangian};
@@ -18,6 +18,11 @@ pub(crate) fn tissue() -> Tissue {
 
 pub(crate) fn stiff_tissue(young: f64) -> Tissue {
     uniform(StVenantKirchhoff::from_young_poisson(young, 0.3).unwrap())
+}
+
+/// Linear tissue of the same stiffness, for models that turn it.
+pub(crate) fn linear_tissue() -> Tissue {
+    uniform(LinearElastic::from_young_poisson(10e3, 0.3).unwrap())
 }
 
 pub(crate) fn uniform<L: LawFamily>(law: L) -> Tissue {

@@ -1,25 +1,68 @@
 //! The assembled tangent is the tangent.
 
+use viscera::material::{LawKind, Tissue};
 use viscera::math::Mat3;
 use viscera::mesh::VolumeMesh;
-use viscera::model::{BlockSink, Scratch};
+use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement, Tangent};
+use viscera::model::{BlockSink, Corotational, ForceModel, Precision, Scratch};
 
-use super::support::{Evaluate, Matrix, Random, Vector, deformed, hex_mesh, models_and_penalty, tet_mesh};
+use super::support::{
+    Evaluate, Matrix, Random, Vector, assert_near, deformed, examples, hex_mesh, models_and_penalty, tet_mesh,
+};
 
-/// A dense matrix of blocks.
+/// A dense matrix of blocks, or its diagonal.
 struct Dense {
     nodes: usize,
     blocks: Vec<Matrix>,
+    diagonal_only: bool,
+}
+
+impl Dense {
+    fn of(model: &dyn ForceModel<f64>, x: &[Vector], scratch: &mut Scratch<f64>, diagonal_only: bool) -> Self {
+        let nodes = x.len();
+        let mut dense = Self { nodes, blocks: vec![Matrix::ZERO; nodes * nodes], diagonal_only };
+        model.add_blocks(x, scratch, &mut dense);
+        dense
+    }
+
+    fn times(&self, dx: &[Vector]) -> Vec<Vector> {
+        let row = |row: &[Matrix]| row.iter().zip(dx).fold(Vector::ZERO, |sum, (&block, &dx)| sum + block * dx);
+        self.blocks.chunks(self.nodes).map(row).collect()
+    }
+
+    fn diagonal(&self) -> impl Iterator<Item = &Matrix> {
+        self.blocks.iter().step_by(self.nodes + 1)
+    }
 }
 
 impl BlockSink<f64> for Dense {
     fn add(&mut self, row: u32, column: u32, block: Mat3<f64>) {
         self.blocks[row as usize * self.nodes + column as usize] += block;
     }
+
+    fn keeps_diagonal_only(&self) -> bool {
+        self.diagonal_only
+    }
 }
 
-/// The sum of the blocks times a direction equals the product along it, to the rounding of the largest product; whether
-/// cells were removed or not.
+/// The sum of the blocks times a direction equals the product along it, to the rounding of the largest product; a sink that
+/// keeps the diagonal gets the same one; whether cells were removed or not, and whether the model was prepared or not.
+fn check(name: &str, model: &mut dyn ForceModel<f64>, x: &[Vector], dx: &[Vector]) {
+    for removed in [&[][..], &[1, 4]] {
+        model.remove(removed);
+        let mut scratch = Scratch::new(x.len());
+        for prepared in [false, true] {
+            if prepared {
+                model.linearize(x, &mut scratch);
+            }
+            let dense = Dense::of(model, x, &mut scratch, false);
+            assert_near(&dense.times(dx), &model.product(x, dx), 1e-12, name);
+            let diagonal = Dense::of(model, x, &mut scratch, true);
+            assert!(dense.diagonal().eq(diagonal.diagonal()), "{name}: another diagonal");
+        }
+    }
+}
+
 #[test]
 fn blocks_times_a_direction_equal_the_product() {
     for mesh in [VolumeMesh::from(tet_mesh([3, 2, 2])), VolumeMesh::from(hex_mesh([3, 2, 2]))] {
@@ -28,19 +71,32 @@ fn blocks_times_a_direction_equal_the_product() {
         let x = deformed(&mesh, f, Vector::ZERO, 1e-3, &mut random);
         let dx = random.vectors(x.len(), 1.0);
         for mut named in models_and_penalty::<f64>(&mesh) {
-            for removed in [&[][..], &[1, 4]] {
-                named.model.remove(removed);
-                let mut scratch = Scratch::new(x.len());
-                let mut dense = Dense { nodes: x.len(), blocks: vec![Matrix::ZERO; x.len() * x.len()] };
-                named.model.linearize(&x, &mut scratch);
-                named.model.add_blocks(&x, &mut scratch, &mut dense);
-                let product = named.model.product(&x, &dx);
-                let scale = product.iter().map(|v| v.norm()).fold(0.0, f64::max);
-                for (row, expected) in dense.blocks.chunks(x.len()).zip(product) {
-                    let sum = row.iter().zip(&dx).fold(Vector::ZERO, |sum, (&block, &dx)| sum + block * dx);
-                    assert!((sum - expected).norm() <= 1e-12 * scale, "{}: {sum:?}, not {expected:?}", named.name);
+            check(&named.name, named.model.as_mut(), &x, &dx);
+        }
+        for (tissue, _) in examples().into_iter().filter(|(tissue, _)| is_linear(tissue)) {
+            for (name, recipe) in corotational_variants(&tissue) {
+                check(&name, f64::build_model(&recipe, &mesh).unwrap().as_mut(), &x, &dx);
+            }
+        }
+    }
+}
+
+fn is_linear(tissue: &Tissue) -> bool {
+    matches!(tissue.kind(), LawKind::LinearElastic | LawKind::TransverseLinear)
+}
+
+fn corotational_variants(tissue: &Tissue) -> Vec<(String, Corotational)> {
+    let mut variants = Vec::new();
+    for rotation in [Rotation::Polar, Rotation::Qr, Rotation::Svd] {
+        for strain in [StrainDisplacement::AtRest, StrainDisplacement::Updated] {
+            for volume in [IntegrationVolume::Initial, IntegrationVolume::Current] {
+                for tangent in [Tangent::Frozen, Tangent::Exact] {
+                    let recipe = Corotational::new(tissue.clone());
+                    let recipe = recipe.rotation(rotation).strain_displacement(strain).volume(volume).tangent(tangent);
+                    variants.push((format!("corotational {rotation:?} {strain:?} {volume:?} {tangent:?}"), recipe));
                 }
             }
         }
     }
+    variants
 }

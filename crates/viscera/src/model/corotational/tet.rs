@@ -42,6 +42,12 @@ struct Batch<R> {
     hooke: Hooke<R>,
 }
 
+/// The law of a batch, and √(s V) R A α of the corners 1, 2, 3.
+struct Turned<R> {
+    hooke: Hooke<R>,
+    gradients: Mat3<R>,
+}
+
 impl<R: Real> Batch<R> {
     #[inline(always)]
     fn at(c: &[R; MOST], fibred: bool) -> Self {
@@ -147,19 +153,18 @@ impl<T: Scalar> CorotationalTets<T> {
     fn add_linearized_product_with<S: Simd>(&self, simd: S, linearization: &[T], dx: &[[T; 4]], out: &mut [[T; 4]]) {
         let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
         for ((nodes, block), row) in self.corners.blocks().zip(self.constants.blocks()).zip(rows) {
-            let (hooke, gradients) = self.load_linearized(simd, block, row);
+            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
             let strain = (gather_edges(simd, dx, nodes) * gradients.transpose()).symmetric_part();
             scatter_forces(simd, times(hooke.stress(strain), &gradients), nodes, out);
         }
     }
 
-    /// The law and the gradients of a batch, both turned.
     #[inline(always)]
-    fn load_linearized<S: Simd>(&self, simd: S, block: &[T], row: &[T]) -> (Hooke<T::Lanes<S>>, Mat3<T::Lanes<S>>) {
+    fn load_linearized<S: Simd>(&self, simd: S, block: &[T], row: &[T]) -> Turned<T::Lanes<S>> {
         let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
         let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
         let fibre = if self.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
-        (Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients)
+        Turned { hooke: Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients }
     }
 
     #[inline(always)]
@@ -167,7 +172,7 @@ impl<T: Scalar> CorotationalTets<T> {
         let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
         for (batch, ((nodes, block), row)) in self.corners.blocks().zip(self.constants.blocks()).zip(rows).enumerate() {
             let elements = self.corners.rows() - batch * T::LANES;
-            let (hooke, gradients) = self.load_linearized(simd, block, row);
+            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
             let [b, c, d] = gradients.columns;
             let gradients = [-(b + c + d), b, c, d];
             for q in 0..4 {
