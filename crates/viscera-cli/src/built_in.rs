@@ -21,6 +21,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "cylinder-bend.toml",
     "fibre-tubes.toml",
     "liver-adaptive.toml",
+    "liver-inversion.toml",
     "liver-pull.toml",
     "liver-resection.toml",
     "paths/liver-resection.csv",

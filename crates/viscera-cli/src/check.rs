@@ -46,12 +46,13 @@ fn warnings(file: &SceneFile, summary: &SceneSummary) -> Vec<String> {
         let of_body = remarks.filter_map(|line| line.strip_prefix("warning: "));
         warnings.extend(of_body.map(|remark| format!("body `{}`: {remark}", body.name)));
     }
-    if summary.substeps > MANY_SUBSTEPS {
+    if let Some(substeps) = summary.substeps.filter(|&substeps| substeps > MANY_SUBSTEPS) {
         let stiffest = summary.bodies.iter().min_by(|a, b| a.stable_step.total_cmp(&b.stable_step));
         if let Some(body) = stiffest {
             warnings.push(format!(
-                "a step of {} s takes {} substeps, because of body `{}`; coarser cells or softer tissue make it faster",
-                summary.step, summary.substeps, body.name
+                "a step of {} s takes {substeps} substeps, because of body `{}`; coarser cells, softer tissue or an \
+                 implicit integrator make it faster",
+                summary.step, body.name
             ));
         }
     }

@@ -9,7 +9,7 @@ use viscera::world::BodyId;
 
 use crate::build::BuiltScene;
 use crate::error::SceneErrors;
-use crate::file::{InstrumentFile, Precision, RegionFile, RegionShape};
+use crate::file::{InstrumentFile, IntegratorName, Precision, RegionFile, RegionShape};
 use crate::scene::Scene;
 
 /// What a scene holds and what it takes to run it. `Display` writes it as a few lines for each body and instrument.
@@ -23,8 +23,10 @@ pub struct SceneSummary {
     pub step: f64,
     /// Steps that the run takes.
     pub steps: u64,
-    /// Substeps of a step at the start.
-    pub substeps: u64,
+    /// Name of the integrator.
+    pub integrator: &'static str,
+    /// Substeps of a step at the start; none where the integrator is implicit.
+    pub substeps: Option<u64>,
     /// Numbers of the simulation.
     pub precision: Precision,
     /// Bodies, in the order of the file.
@@ -52,7 +54,7 @@ pub struct BodySummary {
     pub law: String,
     /// Name of the force model.
     pub model: String,
-    /// Longest stable step at the start [s].
+    /// Longest stable step of the explicit integrator at the start [s].
     pub stable_step: f64,
     /// How many nodes are fixed, and by which region.
     pub fixed: (usize, String),
@@ -106,7 +108,9 @@ impl<T: Scalar> BuiltScene<T> {
             duration: file.duration.0,
             step: file.step.0,
             steps: self.steps(),
-            substeps: viscera::dynamics::explicit::substeps_for(file.step.0, 4.0 / (stable * stable)) as u64,
+            integrator: file.integrator.kind.name(),
+            substeps: (file.integrator.kind == IntegratorName::Explicit)
+                .then(|| viscera::dynamics::explicit::substeps_for(file.step.0, 4.0 / (stable * stable)) as u64),
             precision: file.precision,
             bodies,
             instruments: self.instruments.keys().map(|name| self.instrument_summary(name)).collect(),
@@ -182,9 +186,13 @@ impl fmt::Display for SceneSummary {
             writeln!(out, "{title}")?;
         }
         let precision = if self.precision == Precision::Single { "single" } else { "double" };
-        let Self { duration, steps, step, substeps, .. } = self;
+        let Self { duration, steps, step, .. } = self;
         let step = step * 1e3;
-        writeln!(out, "{duration} s: {steps} steps of {step} ms, each {substeps} substeps, {precision} precision")?;
+        let how = match self.substeps {
+            Some(substeps) => format!("each {substeps} substeps"),
+            None => format!("by {}", self.integrator),
+        };
+        writeln!(out, "{duration} s: {steps} steps of {step} ms, {how}, {precision} precision")?;
         self.bodies.iter().try_for_each(|body| body.fmt(out))?;
         self.instruments.iter().try_for_each(|instrument| instrument.fmt(out))
     }
@@ -196,7 +204,7 @@ impl fmt::Display for BodySummary {
         writeln!(out, "\nbody {}", self.name)?;
         writeln!(out, "  mesh    {} {}, {} nodes, {x:.0} x {y:.0} x {z:.0} mm", self.cells, self.shape, self.nodes)?;
         writeln!(out, "  tissue  {} by {}, {:.3} kg", self.law, self.model, self.mass)?;
-        writeln!(out, "  stable  steps up to {:.3} ms", self.stable_step * 1e3)?;
+        writeln!(out, "  stable  explicit steps up to {:.3} ms", self.stable_step * 1e3)?;
         writeln!(out, "  fixed   {} nodes: {}", self.fixed.0, self.fixed.1)?;
         if self.prescribed > 0 {
             writeln!(out, "  moved   {} nodes", self.prescribed)?;

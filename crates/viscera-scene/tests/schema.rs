@@ -55,7 +55,7 @@ fn a_written_scene_reads_as_the_same_scene() {
         step = "10 ms"
         substep = "1e-4 s"
         precision = "double"
-        integrator = { kind = "explicit" }
+        integrator = { kind = "newmark", newton = { tolerance = 1e-6, iterations = 9 }, linear = { tolerance = 1e-9 }, matrix = "assembled", beta = 0.3, gamma = 0.6 }
         output = { interval = "20 ms", camera = { look = [0, 0, -1] } }
 
         [body.a]
@@ -76,7 +76,9 @@ fn a_written_scene_reads_as_the_same_scene() {
         [body.b]
         mesh = { generate = "box", size = [1, 1, 1], cells = [2, 2, 2], shape = "hexahedra" }
         density = 1000
-        law = { kind = "st-venant-kirchhoff", young = 1000, poisson = 0.3 }
+        law = { kind = "linear", young = 1000, poisson = 0.3 }
+        model = { kind = "corotational", rotation = "qr", strain-displacement = "updated", volume = "current", tangent = "exact" }
+        stiffness-damping = "10 ms"
 
         [instrument.hook]
         kind = "cautery"

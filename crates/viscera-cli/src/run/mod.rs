@@ -10,6 +10,7 @@ mod progress;
 mod recording;
 mod summary;
 mod tables;
+mod tally;
 
 use std::path::{Path, PathBuf};
 

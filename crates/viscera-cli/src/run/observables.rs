@@ -44,9 +44,18 @@ fn body_columns(of: &BodyObservables) -> Vec<(&'static str, f64)> {
     ];
     columns.extend(vector(["momentum x [kg m/s]", "momentum y [kg m/s]", "momentum z [kg m/s]"], of.momentum));
     columns.extend(vector(["reaction x [N]", "reaction y [N]", "reaction z [N]"], of.reaction));
+    columns.extend(vector(
+        ["net internal force x [N]", "net internal force y [N]", "net internal force z [N]"],
+        of.net_internal_force,
+    ));
+    columns.extend(vector(
+        ["net internal torque x [N m]", "net internal torque y [N m]", "net internal torque z [N m]"],
+        of.net_internal_torque,
+    ));
     columns.extend([
         ("removed cells [1]", of.removed_cells as f64),
         ("inverted cells [1]", of.inverted_cells as f64),
+        ("worst quality [1]", of.worst_quality),
         ("non-linear nodes [1]", of.nonlinear_nodes as f64),
         ("at rest [1]", f64::from(u8::from(of.at_rest))),
     ]);

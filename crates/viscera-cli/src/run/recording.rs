@@ -12,7 +12,8 @@ use super::album::Album;
 use super::folder::Folder;
 use super::frames::Frames;
 use super::observables::Observables;
-use super::summary::{Summary, Tally};
+use super::summary::Summary;
+use super::tally::Tally;
 use crate::failure::Failure;
 
 /// Time that the machine has spent on stepping, without writing.

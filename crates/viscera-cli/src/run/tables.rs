@@ -47,18 +47,20 @@ fn table(head: &[&str]) -> Table {
 
 fn bodies(bodies: &[BodyResult]) -> String {
     let cut = bodies.iter().any(|body| body.removed_cells > 0);
-    let inverted = bodies.iter().any(|body| body.inverted_cells > 0);
+    let inverted = bodies.iter().any(|body| body.peak_inverted_cells > 0);
     let adaptive = bodies.iter().any(|body| (1..body.nodes_left).contains(&body.nonlinear_nodes));
     let mut head = vec!["body", "cells"];
     head.extend(cut.then_some("removed"));
-    head.extend(inverted.then_some("inverted"));
+    head.extend(inverted.then_some("inverted, at most"));
     head.extend(adaptive.then_some("non-linear nodes"));
     head.extend(["volume", "variation", "displacement", "elastic", "kinetic", "at rest"]);
     let mut table = table(&head);
     for body in bodies {
         let mut row = vec![body.name.clone(), grouped(body.cells - body.removed_cells)];
         row.extend(cut.then(|| grouped(body.removed_cells)));
-        row.extend(inverted.then(|| grouped(body.inverted_cells)));
+        row.extend(
+            inverted.then(|| format!("{}, {}", grouped(body.inverted_cells), grouped(body.peak_inverted_cells))),
+        );
         row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes_left))));
         row.extend([
             format!("{:.1} cm³", body.volume * 1e6),
@@ -117,18 +119,34 @@ fn instruments(summary: &Summary) -> String {
 
 fn speed(summary: &Summary) -> String {
     let Summary { simulated_time, computing_time, real_time_factor, steps, .. } = summary;
-    let (fewest, most) = (summary.fewest_substeps_of_a_step, summary.most_substeps_of_a_step);
-    let substeps = if fewest == most { format!("{most}") } else { format!("{fewest} to {most}") };
-    let again = match summary.retries {
-        0 => String::new(),
-        count => format!("; {count} made again with more"),
+    let step = with_prefix(summary.step, "s");
+    let how = match &summary.implicit {
+        None => {
+            let (fewest, most) = (summary.fewest_substeps_of_a_step, summary.most_substeps_of_a_step);
+            let substeps = if fewest == most { format!("{most}") } else { format!("{fewest} to {most}") };
+            let again = match summary.retries {
+                0 => String::new(),
+                count => format!("; {count} made again with more"),
+            };
+            let stable = with_prefix(summary.stable_step_at_end, "s");
+            format!("{steps} steps of {step} in {substeps} sub-steps{again}; the stable step is {stable}")
+        }
+        Some(implicit) => {
+            let each = implicit.linear_iterations as f64 / (*steps as f64).max(1.0);
+            let most = implicit.most_linear_iterations_of_a_step;
+            let early = match implicit.steps_not_converged {
+                0 => String::new(),
+                count => format!("; {count} ended above the tolerance"),
+            };
+            format!(
+                "{steps} steps of {step} by {}, {each:.0} iterations of the linear solver in each, {most} at most{early}",
+                summary.integrator
+            )
+        }
     };
     format!(
-        "{simulated_time:.2} s simulated in {computing_time:.2} s: {} {real_time_factor:.2}\n\
-         {steps} steps of {} in {substeps} sub-steps{again}; the stable step is {}",
+        "{simulated_time:.2} s simulated in {computing_time:.2} s: {} {real_time_factor:.2}\n{how}",
         heading("real-time factor"),
-        with_prefix(summary.step, "s"),
-        with_prefix(summary.stable_step_at_end, "s"),
     )
 }
 

@@ -180,7 +180,10 @@ fn every_built_in_scene_is_listed_in_one_line_and_can_be_copied() {
     let desk = Desk::new();
     let outcome = desk.viscera(&["scenes"]).ends_with(0);
     let names: Vec<_> = outcome.out.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(names, ["cylinder-bend", "fibre-tubes", "liver-adaptive", "liver-pull", "liver-resection"]);
+    assert_eq!(
+        names,
+        ["cylinder-bend", "fibre-tubes", "liver-adaptive", "liver-inversion", "liver-pull", "liver-resection"]
+    );
     desk.viscera(&["scenes", "--copy-to", "mine"]).ends_with(0).says("mine");
     desk.viscera(&["check", "mine/liver-resection.toml"]).ends_with(0).says("instrument cautery");
 }

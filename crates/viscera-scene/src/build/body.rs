@@ -1,17 +1,17 @@
 use viscera::body::{Body, BodyError, Load, LoosePieces};
 use viscera::curve::Curve;
-use viscera::material::Tissue;
 use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
-use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, TensorMass, TotalLagrangian};
+use viscera::model::ModelError;
 
 use super::curve::curve;
 use super::law::{densities, tissue};
 use super::mesh::{PlacedMesh, mesh};
+use super::model::recipe;
 use super::region::{Wanted, region};
 use super::site::Site;
 use crate::error::SceneErrors;
-use crate::file::{BodyFile, LawName, LoadFile, LoosePiecesFile, ModelFile, ModelName};
+use crate::file::{BodyFile, LoadFile, LoosePiecesFile};
 
 /// The body, and what a person should know about its mesh.
 pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Vec<String>), SceneErrors> {
@@ -25,6 +25,7 @@ pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Ve
         .name(name)
         .boxed_model(recipe)
         .damping(file.damping.0)
+        .stiffness_damping(file.stiffness_damping.0)
         .keep_volume(file.model.as_ref().and_then(|model| model.keep_volume).map_or(0.0, |kappa| kappa.0))
         .loose_pieces(match file.loose_pieces {
             LoosePiecesFile::Free => LoosePieces::Free,
@@ -45,34 +46,6 @@ pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Ve
         body = body.load(self::load(load, &mesh, &site.key("load").key(index))?);
     }
     Ok((body, notices))
-}
-
-/// The force model: the one that is named, or the tensor-mass model of the law, or on hexahedra the one that works there.
-fn recipe(
-    file: &BodyFile,
-    tissue: Tissue,
-    mesh: &VolumeMesh,
-    site: &Site,
-) -> Result<Box<dyn ModelRecipe>, SceneErrors> {
-    let kind = match (&file.model, mesh, file.law.kind) {
-        (Some(model), ..) => model.kind,
-        (None, VolumeMesh::Hex(_), _) => ModelName::TotalLagrangian,
-        (None, VolumeMesh::Tet(_), LawName::Linear) => ModelName::LinearTensorMass,
-        (None, VolumeMesh::Tet(_), LawName::StVenantKirchhoff) => ModelName::TensorMass,
-    };
-    let adaptive = file.model.as_ref().and_then(|model: &ModelFile| model.adaptive);
-    if adaptive.is_some() && kind != ModelName::TensorMass {
-        let message = "`adaptive` is a setting of the model `tensor-mass`";
-        return Err(site.key("model").key("adaptive").error(message, "take that model, or leave it out"));
-    }
-    Ok(match kind {
-        ModelName::LinearTensorMass => Box::new(LinearTensorMass::new(tissue)),
-        ModelName::TotalLagrangian => Box::new(TotalLagrangian::new(tissue)),
-        ModelName::TensorMass => {
-            let model = TensorMass::new(tissue);
-            Box::new(adaptive.map_or(model.clone(), |threshold| model.adaptive(threshold.0)))
-        }
-    })
 }
 
 fn load(file: &LoadFile, mesh: &VolumeMesh, site: &Site) -> Result<Load, SceneErrors> {
@@ -116,7 +89,7 @@ pub(super) fn blame(error: &BodyError, site: &Site) -> SceneErrors {
         BodyError::Model { source: ModelError::Material(_), .. } => site.key("law"),
         BodyError::Model { .. } | BodyError::NoModel { .. } => site.key("model"),
         BodyError::KeepVolumeOnHexahedra { .. } => site.key("model").key("keep-volume"),
-        BodyError::OutOfRange { name, .. } => site.key(name),
+        BodyError::OutOfRange { name, .. } => site.key(name.replace(' ', "-")),
         BodyError::WrongDensityCount { .. } => site.key("density"),
         BodyError::Region { .. } => site.clone(),
     }

@@ -4,8 +4,10 @@ mod body;
 mod csv;
 mod curve;
 mod instrument;
+mod integrator;
 mod law;
 mod mesh;
+mod model;
 mod region;
 mod site;
 
@@ -13,10 +15,10 @@ use indexmap::IndexMap;
 use viscera::math::Scalar;
 use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
-use viscera::world::{BodyId, InstrumentId, Integrator, Substep, World, WorldConfig, WorldError};
+use viscera::world::{BodyId, InstrumentId, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
-use crate::file::{InstrumentFile, SceneFile, SubstepFile};
+use crate::file::{InstrumentFile, SceneFile};
 use crate::scene::Scene;
 use site::Site;
 
@@ -56,10 +58,7 @@ impl Scene {
         let config = WorldConfig {
             gravity: file.gravity.map(|component| component.0),
             step: file.step.0,
-            integrator: Integrator::Explicit(match file.substep {
-                SubstepFile::Automatic(_) => Substep::Automatic,
-                SubstepFile::Fixed(time) => Substep::Fixed(time.0),
-            }),
+            integrator: integrator::integrator(&file, &root)?,
         };
         let mut world = World::new(config).map_err(|error| root.error(error, ""))?;
         let mut notices = Vec::new();
@@ -73,6 +72,15 @@ impl Scene {
                 WorldError::UnstableSubstep { substep, stable, .. } => root.key("substep").error(
                     format!("body `{name}` blows up at substeps of {substep:.3e} s"),
                     format!("the longest stable one is {stable:.3e} s; \"auto\" finds it by itself"),
+                ),
+                WorldError::StiffnessDampingNeedsImplicit { .. } => site.key("stiffness-damping").error(
+                    "the integrator `explicit` knows no damping by the stiffness",
+                    "take an implicit one, such as `backward-euler`, or `damping`",
+                ),
+                WorldError::NoMeanForces { model, law, .. } => root.key("integrator").key("kind").error(
+                    format!("`energy-momentum` cannot step body `{name}`: `{model}` of the law `{law}`"),
+                    "it needs the law `st-venant-kirchhoff` on tetrahedra by the model `total-lagrangian`, without \
+                     `keep-volume`",
                 ),
                 _ => site.error(&error, ""),
             })?;

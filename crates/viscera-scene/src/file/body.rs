@@ -1,8 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CurveFile, LawFile, MeshFile, PlaceFile, RegionFile};
-use crate::quantity::{Density, Force, Length, Pressure, Rate};
+use super::{CurveFile, LawFile, MeshFile, ModelFile, PlaceFile, RegionFile};
+use crate::quantity::{Density, Force, Length, Pressure, Rate, Time};
 
 /// A body of tissue.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -26,6 +26,10 @@ pub struct BodyFile {
     #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub damping: Rate,
+    /// Damping by the stiffness [s], for implicit integrators: a velocity acts as its displacement over this time would.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(extend("minimum" = 0))]
+    pub stiffness_damping: Time,
     /// What does not move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fix: Option<RegionFile>,
@@ -41,35 +45,6 @@ pub struct BodyFile {
     /// What pulls and pushes on it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<LoadFile>,
-}
-
-/// How a law and a mesh become forces.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(title = "model")]
-pub struct ModelFile {
-    /// Which model.
-    pub kind: ModelName,
-    /// Stiffness κ against changes of the volume of a cell [Pa] (INRIA RR-4028, section 4).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub keep_volume: Option<Pressure>,
-    /// Displacement [m] below which a node follows the linear law alone (INRIA RR-4028, section 6); `tensor-mass` only.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub adaptive: Option<Length>,
-}
-
-/// The force models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelName {
-    /// Precomputed tensors of the linear law; tetrahedra.
-    LinearTensorMass,
-    /// Precomputed tensors of the non-linear law; tetrahedra.
-    TensorMass,
-    /// Stress from the deformation of each cell; every law, tetrahedra and hexahedra.
-    TotalLagrangian,
 }
 
 /// What becomes of pieces that are cut off.
@@ -132,4 +107,8 @@ pub struct LoadFile {
     /// Force per area on the surface in the region [Pa], in a direction that stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub traction: Option<CurveFile<[Pressure; 3]>>,
+}
+
+fn is_zero(time: &Time) -> bool {
+    time.0 == 0.0
 }

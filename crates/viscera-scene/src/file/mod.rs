@@ -6,8 +6,10 @@
 mod body;
 mod curve;
 mod instrument;
+mod integrator;
 mod law;
 mod mesh;
+mod model;
 mod output;
 mod region;
 
@@ -17,13 +19,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Acceleration, Time};
 
-pub use body::{BodyFile, LoadFile, LoosePiecesFile, ModelFile, ModelName, PartFile, PrescribeFile};
+pub use body::{BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile};
 pub use curve::{CurveFile, CurvePath};
 pub use instrument::InstrumentFile;
+pub use integrator::{FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName};
 pub use law::{FibreFile, LawFile, LawName};
 pub use mesh::{
     CellShape, CutFile, GenerateFile, LengthUnit, MeshFile, PlaceFile, RotateFile, SurfaceFile, VolumeFile,
 };
+pub use model::{ModelFile, ModelName, RotationName, StrainDisplacementName, TangentName, VolumeName};
 pub use output::{CameraFile, OutputFile};
 pub use region::{RegionFile, RegionShape};
 
@@ -43,11 +47,12 @@ pub struct SceneFile {
     /// How long the scene runs [s].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub duration: Time,
-    /// Time from one step of the world to the next [s]; by default 5 ms. Each is cut into stable substeps.
+    /// Time from one step of the world to the next [s]; by default 5 ms. The explicit integrator cuts each into stable
+    /// substeps.
     #[serde(default = "five_milliseconds")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub step: Time,
-    /// The integrator's own step: "auto" (the default) takes the largest stable one, a time [s] sets it.
+    /// The explicit integrator's own step: "auto" (the default) takes the largest stable one, a time [s] sets it.
     #[serde(default)]
     pub substep: SubstepFile,
     /// Numbers of the simulation: "single" (the default, twice as fast) or "double" (for comparisons).
@@ -108,24 +113,6 @@ pub enum Precision {
     Single,
     /// 64 bits, about 16 digits: for comparisons.
     Double,
-}
-
-/// How the equations of motion are stepped.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(title = "integrator")]
-pub struct IntegratorFile {
-    /// Which integrator.
-    pub kind: IntegratorName,
-}
-
-/// The integrators.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum IntegratorName {
-    /// Central differences with lumped masses (INRIA RR-4028, eq. 11).
-    #[default]
-    Explicit,
 }
 
 impl SceneFile {

@@ -59,6 +59,20 @@ const SLIPS: &[(&str, &str)] = &[
     ),
     // Steps.
     ("substep = \"1e-4 s\"", "substep = \"1 s\""),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", newton = \"full\" }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", matrix = \"assembled\" }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", beta = 0.3 }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", linear = {} }"),
+    ("substep = \"1e-4 s\"", "substep = \"1 ms\"\nintegrator = { kind = \"backward-euler\" }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"energy-momentum\", newton = \"linearised\" }"),
+    // The model is `tensor-mass`.
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"energy-momentum\" }"),
+    ("density = 1000\n", "density = 1000\nstiffness-damping = \"10 ms\"\n"),
+    // Models of other laws, settings of other models.
+    ("kind = \"tensor-mass\" }", "kind = \"corotational\" }"),
+    ("kind = \"tensor-mass\" }", "kind = \"stiffness-warping\", rotation = \"qr\" }"),
+    ("kind = \"tensor-mass\" }", "kind = \"total-lagrangian\", tangent = \"exact\" }"),
+    ("kind = \"tensor-mass\" }", "kind = \"tensor-mass\", volume = \"current\" }"),
 ];
 
 /// What cannot be built is refused in its line, with what is near or what would do: `refusals.txt` is what people read.
@@ -90,6 +104,91 @@ fn a_part_has_its_own_density() {
     assert_eq!(summary.bodies[0].fixed, (4, "`z-min`".to_owned()));
     assert_eq!(summary.bodies[0].prescribed, 4);
     assert_eq!(summary.instruments[1].path, 0.01);
+}
+
+/// Every setting of a scene is one of the engine, and arrives there.
+#[test]
+fn integrators_and_models_are_those_that_the_scene_asks_for() {
+    use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
+    use viscera::solver::Stop;
+    use viscera::world::Integrator;
+
+    let integrator = |text: &str| {
+        let text = SCENE.replacen("substep = \"1e-4 s\"", &format!("integrator = {{ {text} }}"), 1);
+        match built(&text.replacen("\"tensor-mass\"", "\"total-lagrangian\"", 1)).world.config().integrator {
+            Integrator::Implicit(settings) => settings,
+            Integrator::Explicit(_) => panic!("{text} is explicit"),
+        }
+    };
+    assert_eq!(integrator("kind = \"backward-euler\""), Implicit::default());
+    let full = Newton::Full { relative: 1e-6, at_most: 30 };
+    let linear = Stop::Iterations(25);
+    let expected = Implicit { scheme: Scheme::BackwardEuler, newton: full, linear, matrix: MatrixForm::Assembled };
+    let text = "newton = { tolerance = 1e-6 }, linear = { iterations = 25 }, matrix = \"assembled\"";
+    assert_eq!(integrator(&format!("kind = \"backward-euler\", {text}")), expected);
+    let newmark = Scheme::Newmark { beta: 0.25, gamma: 0.6 };
+    assert_eq!(integrator("kind = \"newmark\", gamma = 0.6"), Implicit::accurate(newmark));
+    let linear = Stop::Tolerance { relative: 1e-9, at_most: 2000 };
+    let expected = Implicit { linear, ..Implicit::accurate(Scheme::Bdf2) };
+    assert_eq!(integrator("kind = \"bdf2\", newton = \"full\", linear = { tolerance = 1e-9 }"), expected);
+    assert_eq!(integrator("kind = \"energy-momentum\""), Implicit::accurate(Scheme::EnergyMomentum));
+}
+
+/// Every combination of the settings of `corotational` steps, on both kinds of cells, and its name and effect are its own: bars
+/// that hang under their weight are pulled out to different lengths.
+#[test]
+fn every_variant_of_the_corotational_model_can_be_asked_for() {
+    let hang = |shape: &str, model: &str| {
+        let text = format!(
+            r#"
+            duration = "20 ms"
+            step = "10 ms"
+            integrator = {{ kind = "backward-euler", linear = {{ tolerance = 1e-10 }} }}
+            [body.bar]
+            mesh = {{ generate = "box", size = [0.1, 0.1, 0.4], cells = [1, 1, 4], shape = "{shape}" }}
+            density = 1000
+            stiffness-damping = "10 ms"
+            law = {{ kind = "linear", young = "10 kPa", poisson = 0.3 }}
+            model = {{ {model} }}
+            fix = "z-min"
+            prescribe = [{{ region = "z-max", displacement = [[0, [0, 0, 0]], [0.01, [0.05, 0.02, 0.1]]] }}]
+            "#
+        );
+        let mut built = built(&text);
+        for _ in 0..built.steps() {
+            built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        }
+        let bar = built.bodies["bar"];
+        (built.world.body(bar).model().to_string(), built.world.observe(bar).elastic_energy)
+    };
+    for shape in ["tetrahedra", "hexahedra"] {
+        let mut energies = Vec::new();
+        for rotation in ["polar", "qr", "svd"] {
+            for strain in ["at-rest", "updated"] {
+                for volume in ["initial", "current"] {
+                    for tangent in ["frozen", "exact"] {
+                        let settings = format!(
+                            "rotation = \"{rotation}\", strain-displacement = \"{strain}\", volume = \"{volume}\", \
+                             tangent = \"{tangent}\""
+                        );
+                        let (model, energy) = hang(shape, &format!("kind = \"corotational\", {settings}"));
+                        assert_eq!(model, "corotational");
+                        energies.push((settings, energy));
+                    }
+                }
+            }
+        }
+        for (settings, energy) in &energies {
+            for (others, other) in &energies {
+                // Singular values find the polar rotation; all else differs.
+                let as_polar = |settings: &str| settings.replace("svd", "polar");
+                let same = as_polar(settings) == as_polar(others);
+                let difference = (energy / other - 1.0).abs();
+                assert_eq!(difference < 1e-9, same, "{shape}, {settings} and {others}: {difference:e}");
+            }
+        }
+    }
+    assert_eq!(hang("tetrahedra", "kind = \"stiffness-warping\"").0, "stiffness-warping");
 }
 
 /// A turn by 90° about x takes z to −y; then the body is moved.

@@ -38,6 +38,18 @@ const SLIPS: &[(&str, &str)] = &[
     ("{ sphere = { centre = [0, 0.02, -0.03], radius = \"3 cm\" } }", "3"),
     ("radius = \"3 cm\" }", "radius = \"3 cm\" }, group = \"back\""),
     ("substep = \"auto\"", "substep = \"aut\""),
+    // Integrators and models.
+    ("precision = \"double\"", "integrator = { kind = \"backwards-euler\" }"),
+    ("precision = \"double\"", "integrator = { kind = \"newmark\", gama = 0.6 }"),
+    ("precision = \"double\"", "integrator = { kind = \"newmark\", gamma = 0.4 }"),
+    ("precision = \"double\"", "integrator = { kind = \"bdf2\", newton = \"ful\" }"),
+    ("precision = \"double\"", "integrator = { kind = \"bdf2\", newton = { tolerance = 1, iterations = 9 } }"),
+    ("precision = \"double\"", "integrator = { kind = \"bdf2\", linear = 25 }"),
+    ("precision = \"double\"", "integrator = { kind = \"bdf2\", linear = { iterations = 0 } }"),
+    ("precision = \"double\"", "integrator = { kind = \"bdf2\", matrix = \"free\" }"),
+    ("kind = \"tensor-mass\"", "kind = \"corotational\", rotation = \"quaternion\""),
+    ("kind = \"tensor-mass\"", "kind = \"corotational\", strain-displacement = \"current\""),
+    ("damping = 0.5", "stiffness-damping = \"0.5 1/s\""),
     // Quantities.
     ("edge = \"12 mm\"", "edge = \"5 kg\""),
     ("edge = \"12 mm\"", "edge = \"12 furlongs\""),

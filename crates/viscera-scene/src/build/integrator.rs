@@ -1,0 +1,97 @@
+use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
+use viscera::solver::Stop;
+use viscera::world::{Integrator, Substep};
+
+use super::site::Site;
+use crate::error::SceneErrors;
+use crate::file::{
+    IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, SceneFile, SubstepFile,
+};
+
+/// Iterations of the linear solver where the scene gives a tolerance alone.
+const MOST_ITERATIONS: u32 = 2000;
+
+/// The integrator of the scene, each of its settings known to it.
+pub(super) fn integrator(file: &SceneFile, root: &Site) -> Result<Integrator, SceneErrors> {
+    let settings = &file.integrator;
+    let site = root.key("integrator");
+    let scheme = match settings.kind {
+        IntegratorName::Explicit => None,
+        IntegratorName::BackwardEuler => Some(Scheme::BackwardEuler),
+        IntegratorName::Newmark => Some(newmark(settings)),
+        IntegratorName::Bdf2 => Some(Scheme::Bdf2),
+        IntegratorName::EnergyMomentum => Some(Scheme::EnergyMomentum),
+    };
+    if settings.kind != IntegratorName::Newmark {
+        only(&site, [("beta", settings.beta.is_some()), ("gamma", settings.gamma.is_some())], "`newmark`")?;
+    }
+    match (scheme, file.substep) {
+        (None, substep) => {
+            let of_implicit = [
+                ("newton", settings.newton.is_some()),
+                ("linear", settings.linear.is_some()),
+                ("matrix", settings.matrix.is_some()),
+            ];
+            only(&site, of_implicit, "`backward-euler`, `newmark`, `bdf2`, `energy-momentum`")?;
+            Ok(Integrator::Explicit(match substep {
+                SubstepFile::Automatic(_) => Substep::Automatic,
+                SubstepFile::Fixed(time) => Substep::Fixed(time.0),
+            }))
+        }
+        (Some(_), SubstepFile::Fixed(_)) => {
+            let message = "`substep` is a setting of the integrator `explicit`";
+            Err(root
+                .key("substep")
+                .error(message, "an implicit one makes each step at once: set `step`, leave this out"))
+        }
+        (Some(scheme), SubstepFile::Automatic(_)) => implicit(settings, scheme, &site).map(Integrator::Implicit),
+    }
+}
+
+/// Refuses keys that are given and belong to something else.
+fn only<const N: usize>(site: &Site, keys: [(&str, bool); N], owner: &str) -> Result<(), SceneErrors> {
+    match keys.into_iter().find(|(_, given)| *given) {
+        Some((key, _)) => Err(site
+            .key(key)
+            .error(format!("`{key}` is a setting of {owner}"), "take such an integrator, or leave it out")),
+        None => Ok(()),
+    }
+}
+
+fn newmark(file: &IntegratorFile) -> Scheme {
+    Scheme::Newmark { beta: file.beta.unwrap_or(0.25), gamma: file.gamma.unwrap_or(0.5) }
+}
+
+fn implicit(file: &IntegratorFile, scheme: Scheme, site: &Site) -> Result<Implicit, SceneErrors> {
+    let linearised = match file.newton {
+        None => scheme == Scheme::BackwardEuler,
+        Some(newton) => newton == NewtonFile::Named(NewtonName::Linearised),
+    };
+    if linearised && scheme == Scheme::EnergyMomentum {
+        let message = "`energy-momentum` keeps no energy where its steps are linearised";
+        return Err(site.key("newton").error(message, "take \"full\", or another integrator"));
+    }
+    let mut settings = match linearised {
+        true => Implicit { scheme, ..Implicit::default() },
+        false => Implicit::accurate(scheme),
+    };
+    if let Some(NewtonFile::Full(full)) = file.newton {
+        settings.newton = Newton::Full { relative: full.tolerance, at_most: full.iterations };
+    }
+    settings.linear = match file.linear {
+        None => settings.linear,
+        Some(LinearFile { tolerance: Some(relative), iterations }) => {
+            Stop::Tolerance { relative, at_most: iterations.unwrap_or(MOST_ITERATIONS) }
+        }
+        Some(LinearFile { tolerance: None, iterations: Some(iterations) }) => Stop::Iterations(iterations),
+        Some(LinearFile { tolerance: None, iterations: None }) => {
+            let help = "give `iterations` for a fixed number, `tolerance` for as many as it takes, or both";
+            return Err(site.key("linear").error("the linear solver has no end", help));
+        }
+    };
+    settings.matrix = match file.matrix {
+        None | Some(MatrixFile::MatrixFree) => MatrixForm::Free,
+        Some(MatrixFile::Assembled) => MatrixForm::Assembled,
+    };
+    Ok(settings)
+}

@@ -1,0 +1,91 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::{Length, Pressure};
+
+/// How a law and a mesh become forces.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "model")]
+pub struct ModelFile {
+    /// Which model.
+    pub kind: ModelName,
+    /// Stiffness κ against changes of the volume of a cell [Pa] (INRIA RR-4028, section 4).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub keep_volume: Option<Pressure>,
+    /// Displacement [m] below which a node follows the linear law alone (INRIA RR-4028, section 6); `tensor-mass` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub adaptive: Option<Length>,
+    /// How `corotational` finds the rotation of a cell; by default "polar".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationName>,
+    /// The shape over which `corotational` differentiates displacements; by default "at-rest".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strain_displacement: Option<StrainDisplacementName>,
+    /// The volume over which `corotational` integrates stress; by default "initial".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume: Option<VolumeName>,
+    /// What `corotational` gives implicit steps as its stiffness; by default "frozen".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tangent: Option<TangentName>,
+}
+
+/// The force models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelName {
+    /// Precomputed tensors of the linear law; tetrahedra.
+    LinearTensorMass,
+    /// Precomputed tensors of the non-linear law; tetrahedra.
+    TensorMass,
+    /// Stress from the deformation of each cell; every law, tetrahedra and hexahedra.
+    TotalLagrangian,
+    /// The linear law turned with each cell (Nesme et al. 2005); tetrahedra and hexahedra. Turns back when inverted.
+    Corotational,
+    /// The linear law turned at each node (Müller et al. 2002); tetrahedra. For comparison: its forces do not balance.
+    StiffnessWarping,
+}
+
+/// How the rotation of a cell is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RotationName {
+    /// The nearest rotation.
+    Polar,
+    /// Along the first two edges: cheapest, and dependent on the order of the corners.
+    Qr,
+    /// The nearest rotation by singular values.
+    Svd,
+}
+
+/// The shape over which displacements are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum StrainDisplacementName {
+    /// The rest shape.
+    AtRest,
+    /// The current shape.
+    Updated,
+}
+
+/// The volume over which stress is integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum VolumeName {
+    /// That at rest.
+    Initial,
+    /// The current one.
+    Current,
+}
+
+/// What an implicit step takes for the stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TangentName {
+    /// The linear one, turned: symmetric, never negative, cheap.
+    Frozen,
+    /// The derivative of the forces.
+    Exact,
+}
