@@ -1,4 +1,4 @@
-//! `cargo bench -p viscera-benches`: forces, steps and cuts per tetrahedron, in both precisions, at three sizes.
+//! `cargo bench -p viscera-benches`: forces, products, steps and cuts per element, in both precisions, at three sizes.
 //!
 //! `-- --quick` takes a quick look, `-- forces/tensor-mass` some of them. At the end stands one line for each, with the
 //! share of the machine's own peak.
@@ -10,18 +10,24 @@ use std::time::{Duration, Instant};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode};
 use viscera::body::Body;
+use viscera::dynamics::implicit::{Implicit, MatrixForm};
 use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
 use viscera::model::{
-    ForceModel, LinearTensorMass, ModelRecipe, Precision, Scratch, TensorMass, TotalLagrangian, VolumePenalty,
+    Corotational, ForceModel, LinearTensorMass, ModelRecipe, Precision, Scratch, TensorMass, TotalLagrangian,
+    VolumePenalty,
 };
-use viscera::world::{World, WorldConfig};
+use viscera::solver::Stop;
+use viscera::world::{Integrator, World, WorldConfig};
 use viscera_benches::{Machine, instruction_set};
 
 /// Cells of the beam of 0.1×0.1×0.4 m along its axes: 1536, 12 288 and 98 304 tetrahedra.
 const SIZES: [[usize; 3]; 3] = [[4, 4, 16], [8, 8, 32], [16, 16, 64]];
 const BEAM: [f64; 3] = [0.1, 0.1, 0.4]; // m
+
+/// Iterations of the conjugate gradient in an implicit step.
+const ITERATIONS: u32 = 25;
 
 /// What a measurement is to be compared with.
 #[derive(Clone, Copy)]
@@ -107,6 +113,40 @@ impl Suite<'_> {
         });
     }
 
+    /// One product with the stiffness, prepared for.
+    fn product<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh, flops: Option<f64>) {
+        let x = stretched::<T>(mesh);
+        let mut scratch = Scratch::new(x.len());
+        let (dx, mut out) = (x.clone(), vec![Vec3::ZERO; x.len()]);
+        model.linearize(&x, &mut scratch);
+        let yardstick = flops.map_or(Yardstick::None, Yardstick::Flops);
+        self.measure::<T>(&format!("product/{name}"), mesh.cell_count(), yardstick, || {
+            let begin = Instant::now();
+            model.add_product(black_box(&x), black_box(&dx), &mut scratch, black_box(&mut out));
+            begin.elapsed()
+        });
+    }
+
+    /// One implicit step of a beam that swings under gravity, linearised, with 25 iterations of the conjugate gradient: the
+    /// time per element and iteration, with all that belongs to a step in it.
+    fn implicit<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>, matrix: MatrixForm) {
+        let settings = Implicit { linear: Stop::Iterations(ITERATIONS), matrix, ..Implicit::default() };
+        let integrator = Integrator::Implicit(settings);
+        let mut world = World::<T>::new(WorldConfig { step: 1e-2, integrator, ..WorldConfig::default() }).unwrap();
+        let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
+        world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
+        let snapshot = world.snapshot();
+        self.measure::<T>(&format!("implicit/{name}"), mesh.cell_count(), Yardstick::None, || {
+            let begin = Instant::now();
+            world.step().unwrap();
+            let elapsed = begin.elapsed();
+            if world.time() > 0.1 {
+                world.restore(&snapshot).unwrap();
+            }
+            elapsed / ITERATIONS
+        });
+    }
+
     /// Removes every 97th tetrahedron; the time per removed one.
     fn removal<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh) {
         let cells: Vec<u32> = (0..mesh.cell_count() as u32).step_by(97).collect();
@@ -161,6 +201,25 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
         suite.removal("volume-penalty", &penalty, &mesh);
 
         let hexahedra = VolumeMesh::from(HexMesh::box_grid(cells, BEAM));
+        let turned = Corotational::new(linear());
+        // Multiplications and additions of the rotated-gradient form.
+        let products = [("corotational", &mesh, Some(129.0)), ("corotational/hexahedra", &hexahedra, None)];
+        for (name, mesh, flops) in products {
+            let model = T::build_model(&turned, mesh).unwrap();
+            suite.forces::<T>(name, model.as_ref(), mesh, None);
+            suite.product::<T>(name, model.as_ref(), mesh, flops);
+        }
+        if cells != SIZES[0] {
+            let laws: [(&str, Box<dyn Fn() -> Box<dyn ModelRecipe>>); 2] = [
+                ("corotational", Box::new(|| Box::new(turned.clone()))),
+                ("total-lagrangian/st-venant-kirchhoff", Box::new(|| Box::new(TotalLagrangian::new(stvk())))),
+            ];
+            for (name, recipe) in laws {
+                suite.implicit::<T>(name, &mesh, recipe(), MatrixForm::Free);
+                suite.implicit::<T>(&format!("{name}/assembled"), &mesh, recipe(), MatrixForm::Assembled);
+                suite.implicit::<T>(&format!("{name}/hexahedra"), &hexahedra, recipe(), MatrixForm::Free);
+            }
+        }
         let model = T::build_model(&TotalLagrangian::new(stvk()), &hexahedra).unwrap();
         suite.forces::<T>("total-lagrangian/hexahedra", model.as_ref(), &hexahedra, None);
     }
