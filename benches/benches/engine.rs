@@ -129,12 +129,18 @@ impl Suite<'_> {
 
     /// One implicit step of a beam that swings under gravity, linearised, with 25 iterations of the conjugate gradient: the
     /// time per element and iteration, with all that belongs to a step in it.
-    fn implicit<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>, matrix: MatrixForm) {
+    fn implicit<T: Precision>(
+        &self,
+        name: &str,
+        mesh: &VolumeMesh,
+        recipe: impl ModelRecipe + 'static,
+        matrix: MatrixForm,
+    ) {
         let settings = Implicit { linear: Stop::Iterations(ITERATIONS), matrix, ..Implicit::default() };
         let integrator = Integrator::Implicit(settings);
         let mut world = World::<T>::new(WorldConfig { step: 1e-2, integrator, ..WorldConfig::default() }).unwrap();
         let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
-        world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
+        world.add(Body::new(mesh.clone(), 1000.0).model(recipe).fix(held)).unwrap();
         let snapshot = world.snapshot();
         self.measure::<T>(&format!("implicit/{name}"), mesh.cell_count(), Yardstick::None, || {
             let begin = Instant::now();
@@ -145,6 +151,19 @@ impl Suite<'_> {
             }
             elapsed / ITERATIONS
         });
+    }
+
+    /// The implicit step matrix-free and assembled, and on hexahedra.
+    fn implicit_forms<T: Precision>(
+        &self,
+        name: &str,
+        tetrahedra: &VolumeMesh,
+        hexahedra: &VolumeMesh,
+        recipe: impl ModelRecipe + Clone + 'static,
+    ) {
+        self.implicit::<T>(name, tetrahedra, recipe.clone(), MatrixForm::Free);
+        self.implicit::<T>(&format!("{name}/assembled"), tetrahedra, recipe.clone(), MatrixForm::Assembled);
+        self.implicit::<T>(&format!("{name}/hexahedra"), hexahedra, recipe, MatrixForm::Free);
     }
 
     /// Removes every 97th tetrahedron; the time per removed one.
@@ -210,15 +229,9 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
             suite.product::<T>(name, model.as_ref(), mesh, flops);
         }
         if cells != SIZES[0] {
-            let laws: [(&str, Box<dyn Fn() -> Box<dyn ModelRecipe>>); 2] = [
-                ("corotational", Box::new(|| Box::new(turned.clone()))),
-                ("total-lagrangian/st-venant-kirchhoff", Box::new(|| Box::new(TotalLagrangian::new(stvk())))),
-            ];
-            for (name, recipe) in laws {
-                suite.implicit::<T>(name, &mesh, recipe(), MatrixForm::Free);
-                suite.implicit::<T>(&format!("{name}/assembled"), &mesh, recipe(), MatrixForm::Assembled);
-                suite.implicit::<T>(&format!("{name}/hexahedra"), &hexahedra, recipe(), MatrixForm::Free);
-            }
+            suite.implicit_forms::<T>("corotational", &mesh, &hexahedra, turned);
+            let direct = TotalLagrangian::new(stvk());
+            suite.implicit_forms::<T>("total-lagrangian/st-venant-kirchhoff", &mesh, &hexahedra, direct);
         }
         let model = T::build_model(&TotalLagrangian::new(stvk()), &hexahedra).unwrap();
         suite.forces::<T>("total-lagrangian/hexahedra", model.as_ref(), &hexahedra, None);
