@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::tensor_mass::{EntityLoop, LinearEdge, LinearVertex, RestShape};
+use super::tensor_mass::{EntityLoop, Frame, LinearEdge, LinearVertex, RestShape};
 use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
@@ -63,7 +63,7 @@ impl LinearTensorMass {
         }
         let shape = RestShape::new(mesh, &self.tissue)?;
         Ok(Box::new(LinearModel::<T> {
-            rest: shape.rest_positions(),
+            arms: shape.rest_arms(),
             vertices: shape.assemble_vertices(),
             edges: shape.assemble_edges(),
             removed: vec![false; shape.cell_count()],
@@ -75,7 +75,8 @@ impl LinearTensorMass {
 #[derive(Clone, Debug)]
 struct LinearModel<T: Scalar> {
     shape: Arc<RestShape>,
-    rest: Vec<Vec3<T>>,
+    /// Places at rest, counted from their mean.
+    arms: Vec<Vec3<T>>,
     vertices: EntityLoop<T, LinearVertex, 1>,
     edges: EntityLoop<T, LinearEdge, 2>,
     removed: Vec<bool>,
@@ -97,8 +98,10 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         let Scratch { nodal, forces, .. } = scratch;
-        for (row, rest) in nodal.iter_mut().zip(&self.rest) {
-            *row = [row[0] - rest.x, row[1] - rest.y, row[2] - rest.z, T::ONE];
+        let frame = Frame::along(x);
+        for (row, (x, arm)) in nodal.iter_mut().zip(x.iter().zip(&self.arms)) {
+            let u = frame.displacement(*x, *arm);
+            *row = [u.x, u.y, u.z, T::ONE];
         }
         self.add_stiffness_times(nodal, forces);
         scratch.finish(out);
@@ -117,7 +120,9 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let displacement = |node: u32| x[node as usize].cast::<f64>() - self.shape.mesh.nodes[node as usize];
+        let (x, arms): (Vec<_>, Vec<_>) = (x.iter().map(|x| x.cast()).collect(), self.shape.rest_arms());
+        let frame = Frame::along(&x);
+        let displacement = |node: u32| frame.displacement(x[node as usize], arms[node as usize]);
         self.vertices.energy(displacement) + self.edges.energy(displacement)
     }
 

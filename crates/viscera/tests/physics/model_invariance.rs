@@ -7,8 +7,8 @@ use viscera::mesh::{Mesh, TetMesh, VolumeMesh};
 use viscera::model::Precision;
 
 use crate::support::{
-    Evaluate, KEEP_VOLUME, Named, Random, Vector, amplification, assert_close, assert_near, deformed, examples,
-    hex_mesh, largest, models, models_and_penalty, tet_mesh,
+    Evaluate, KEEP_VOLUME, Named, Random, Vector, assert_close, assert_near, deformed, examples, hex_mesh, largest,
+    models, models_and_penalty, tet_mesh,
 };
 
 fn meshes() -> [VolumeMesh; 2] {
@@ -24,17 +24,13 @@ fn moving_and_turning_the_body_moves_and_turns_its_forces() {
         for named in models_and_penalty::<f64>(&mesh) {
             let (forces, energy) = (named.model.forces(&x), named.model.energy(&x));
             let shifted: Vec<_> = x.iter().map(|&x| x + shift).collect();
-            let lost = amplification(&named.name, &mesh, &shifted);
-            let (tolerance, fourth_degree) = (1e-12_f64.max(1e-14 * lost), 1e-14 * lost.powf(4.0 / 3.0));
-            assert_near(&named.model.forces(&shifted), &forces, tolerance, &named.name);
-            assert_close(named.model.energy(&shifted), energy, tolerance.max(fourth_degree), &named.name);
+            assert_near(&named.model.forces(&shifted), &forces, 1e-12, &named.name);
+            assert_close(named.model.energy(&shifted), energy, 1e-12, &named.name);
             if named.claims.objective {
                 let turned: Vec<_> = x.iter().map(|&x| turn * x + shift).collect();
-                let lost = amplification(&named.name, &mesh, &turned);
-                let (tolerance, fourth_degree) = (1e-12_f64.max(1e-14 * lost), 1e-14 * lost.powf(4.0 / 3.0));
                 let expected: Vec<_> = forces.iter().map(|&force| turn * force).collect();
-                assert_near(&named.model.forces(&turned), &expected, tolerance, &named.name);
-                assert_close(named.model.energy(&turned), energy, tolerance.max(fourth_degree), &named.name);
+                assert_near(&named.model.forces(&turned), &expected, 1e-12, &named.name);
+                assert_close(named.model.energy(&turned), energy, 1e-12, &named.name);
             }
         }
     }

@@ -4,8 +4,8 @@ use viscera::material::{LawFamily, LawVisitor};
 use viscera::math::Sym3;
 
 use crate::support::{
-    Evaluate, Matrix, Reference, assert_close, assert_near, inner_nodes, matrix, models_of_the_law, number, vector,
-    vectors,
+    Evaluate, Matrix, Reference, Vector, assert_close, assert_near, inner_nodes, matrix, models_of_the_law, number,
+    vector, vectors,
 };
 
 const CASES: [&str; 6] = [
@@ -76,6 +76,39 @@ fn models_hold_the_patch_with_the_forces_of_the_reference() {
             assert_eq!(inner_nodes(&mesh), [13]);
             let scale = crate::support::largest(&expected);
             assert!(forces[13].norm() <= tolerance * scale, "{what}: force on the inner node {:?}", forces[13]);
+        }
+    }
+}
+
+/// The patch test as it is meant: the surface is moved, the inner node is left where it was, and Newton's method takes it to
+/// where the homogeneous deformation has it.
+#[test]
+fn the_free_node_of_the_patch_finds_its_place() {
+    let inner = 13;
+    for case in CASES {
+        let reference = Reference::read(case);
+        let mesh = reference.mesh();
+        let conditions = &reference.data["boundary_conditions"];
+        let (f, c) = (matrix(&conditions["deformation_gradient_F"]), vector(&conditions["translation_m"]));
+        let rest = mesh.nodes();
+        let displacement = vectors(&reference.data["reference"]["nodal_displacement_m"])[inner];
+        let tissue = reference.tissue(reference.data["material"]["model"].as_str().unwrap());
+        for named in models_of_the_law::<f64>(&tissue, &mesh) {
+            let mut x: Vec<_> = rest.iter().map(|&node| f * node + c).collect();
+            x[inner] = rest[inner] + c;
+            for _ in 0..12 {
+                let column = |axis: usize| {
+                    let mut along = vec![Vector::ZERO; x.len()];
+                    along[inner][axis] = 1.0;
+                    named.model.product(&x, &along)[inner]
+                };
+                let stiffness = Matrix::from_columns(column(0), column(1), column(2));
+                let force = named.model.forces(&x)[inner];
+                x[inner] -= stiffness.inverse() * force;
+            }
+            let error = (x[inner] - rest[inner] - displacement).norm();
+            let size = mesh.size();
+            assert!(error <= reference.tolerance() * size, "{case}: {}: {error:e} m off", named.name);
         }
     }
 }

@@ -6,14 +6,16 @@
 //! Removing a tetrahedron subtracts its tensors from the entities that it touches: 280 numbers, whatever the size of the
 //! mesh. In the adaptive form only the linear part is applied at a vertex whose displacement is below a threshold.
 //!
-//! The polynomials run over displacements from rest, and their terms cancel where the body moves or turns as a whole: of
-//! the precision about (|u|/h)³ roundings are lost, with h the size of a cell. In single precision a body that wanders off
-//! by a hundred cells has lost a few per cent of its forces: take [`TotalLagrangian`](super::TotalLagrangian) for that.
+//! The polynomials run over displacements in a frame that follows the body. Where a part of it moves or turns against the
+//! rest, their terms cancel: of the precision about (|u|/h)³ roundings are lost, with h the size of a cell. In single
+//! precision a piece cut off that wanders away by a hundred cells has lost a few per cent of its forces: take
+//! [`TotalLagrangian`](super::TotalLagrangian) for that.
 //!
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), sections 3, 5 and 6, with misprints corrected.
 
 mod entity;
 mod entity_loop;
+mod frame;
 mod shape;
 mod tensors;
 #[cfg(test)]
@@ -24,6 +26,7 @@ use std::sync::Arc;
 use self::entity::{Edge, Tetrahedron, Triangle, Vertex};
 pub(crate) use self::entity::{LinearEdge, LinearVertex};
 pub(crate) use self::entity_loop::EntityLoop;
+pub(crate) use self::frame::Frame;
 pub(crate) use self::shape::RestShape;
 use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawKind, Tissue};
@@ -96,6 +99,7 @@ impl TensorMass {
         let shape = RestShape::new(mesh, &self.tissue)?;
         Ok(Box::new(TensorMassModel::<T> {
             rest: shape.rest_positions(),
+            arms: shape.rest_arms(),
             squared_threshold: self.threshold.map(|threshold| T::from_f64(threshold * threshold)),
             vertices: shape.assemble_vertices(),
             edges: shape.assemble_edges(),
@@ -111,6 +115,8 @@ impl TensorMass {
 struct TensorMassModel<T: Scalar> {
     shape: Arc<RestShape>,
     rest: Vec<Vec3<T>>,
+    /// Places at rest, counted from their mean.
+    arms: Vec<Vec3<T>>,
     squared_threshold: Option<T>,
     vertices: EntityLoop<T, Vertex, 1>,
     edges: EntityLoop<T, Edge, 2>,
@@ -120,11 +126,17 @@ struct TensorMassModel<T: Scalar> {
 }
 
 impl<T: Scalar> TensorMassModel<T> {
-    /// Makes displacements of places, and sets the weight of the non-linear part.
-    fn subtract_rest(&self, nodal: &mut [[T; 4]]) {
-        for (row, rest) in nodal.iter_mut().zip(&self.rest) {
-            let u = Vec3::new(row[0], row[1], row[2]) - *rest;
-            let weight = if self.is_nonlinear_at(u) { T::ONE } else { T::ZERO };
+    /// The frame that follows the body. The linear part of an adaptive model knows no rotations.
+    fn frame(&self, x: &[Vec3<T>]) -> Frame<T> {
+        if self.squared_threshold.is_some() { Frame::along(x) } else { Frame::following(x, &self.arms) }
+    }
+
+    /// Makes displacements in the frame of places, and sets the weight of the non-linear part.
+    fn enter(&self, frame: &Frame<T>, nodal: &mut [[T; 4]]) {
+        for (row, (arm, rest)) in nodal.iter_mut().zip(self.arms.iter().zip(&self.rest)) {
+            let x = Vec3::new(row[0], row[1], row[2]);
+            let weight = if self.is_nonlinear_at(x - *rest) { T::ONE } else { T::ZERO };
+            let u = frame.displacement(x, *arm);
             *row = [u.x, u.y, u.z, weight];
         }
     }
@@ -144,40 +156,49 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
+        let frame = self.frame(x);
         let Scratch { nodal, forces, .. } = scratch;
-        self.subtract_rest(nodal);
+        self.enter(&frame, nodal);
         match self.squared_threshold {
             Some(_) => self.add_forces_at::<true>(nodal, forces),
             None => self.add_forces_at::<false>(nodal, forces),
         }
+        frame.leave(forces);
         scratch.finish(out);
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
+        let frame = self.frame(x);
         let Scratch { nodal, direction, forces, .. } = scratch;
-        self.subtract_rest(nodal);
+        self.enter(&frame, nodal);
+        frame.enter(direction);
         self.vertices.add_product(nodal, direction, forces);
         self.edges.add_product(nodal, direction, forces);
         self.triangles.add_product(nodal, direction, forces);
         self.tetrahedra.add_product(nodal, direction, forces);
+        frame.leave(forces);
         scratch.finish(out);
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
+        let frame = self.frame(x);
         let nodal = &mut scratch.nodal;
-        self.subtract_rest(nodal);
-        self.vertices.add_blocks(nodal, sink);
-        self.edges.add_blocks(nodal, sink);
-        self.triangles.add_blocks(nodal, sink);
-        self.tetrahedra.add_blocks(nodal, sink);
+        self.enter(&frame, nodal);
+        let mut sink = frame.leaving(sink);
+        self.vertices.add_blocks(nodal, &mut sink);
+        self.edges.add_blocks(nodal, &mut sink);
+        self.triangles.add_blocks(nodal, &mut sink);
+        self.tetrahedra.add_blocks(nodal, &mut sink);
     }
 
     /// Energy of the full law, also where an adaptive model is linear.
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let displacement = |node: u32| x[node as usize].cast::<f64>() - self.shape.mesh.nodes[node as usize];
+        let (x, arms): (Vec<_>, Vec<_>) = (x.iter().map(|x| x.cast()).collect(), self.shape.rest_arms());
+        let frame = Frame::following(&x, &arms);
+        let displacement = |node: u32| frame.displacement(x[node as usize], arms[node as usize]);
         self.vertices.energy(displacement)
             + self.edges.energy(displacement)
             + self.triangles.energy(displacement)

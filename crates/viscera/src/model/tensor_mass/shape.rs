@@ -43,6 +43,13 @@ impl RestShape {
         self.mesh.nodes.iter().map(|node| node.cast()).collect()
     }
 
+    /// Places at rest, counted from their mean.
+    pub(crate) fn rest_arms<T: Scalar>(&self) -> Vec<Vec3<T>> {
+        let nodes = &self.mesh.nodes;
+        let mean = nodes.iter().fold(Vec3::ZERO, |sum, &node| sum + node) / nodes.len().max(1) as f64;
+        nodes.iter().map(|&node| (node - mean).cast()).collect()
+    }
+
     /// Table of the vertices.
     pub(crate) fn assemble_vertices<T: Scalar, E: Entity<1>>(&self) -> EntityLoop<T, E, 1> {
         self.assemble((0..self.mesh.nodes.len() as u32).map(|node| [node]).collect(), |shape, cell| {

@@ -160,19 +160,6 @@ pub(crate) fn deformed(mesh: &VolumeMesh, f: Matrix, c: Vector, noise: f64, rand
     mesh.nodes().iter().map(|&node| f * node + c + random.vector() * noise).collect()
 }
 
-/// By how much a model multiplies roundings: tensor-mass sums powers of the displacement up to the third, which are
-/// (|u|/h)³ times as large as what is left of them where the body moves as a whole; 1 for models that see differences only.
-pub(crate) fn amplification(name: &str, mesh: &VolumeMesh, x: &[Vector]) -> f64 {
-    if !name.contains("tensor-mass") {
-        return 1.0;
-    }
-    let rest = mesh.nodes();
-    let furthest = x.iter().zip(rest).map(|(&x, &rest)| (x - rest).norm()).fold(0.0, f64::max);
-    let edge = |cell: usize| (rest[mesh.cell(cell)[0] as usize] - rest[mesh.cell(cell)[1] as usize]).norm();
-    let shortest = (0..mesh.cell_count()).map(edge).fold(f64::MAX, f64::min);
-    (1.0 + furthest / shortest).powi(3)
-}
-
 /// The nodes that lie on no boundary face.
 pub(crate) fn inner_nodes(mesh: &VolumeMesh) -> Vec<usize> {
     let surface = match mesh {
