@@ -206,5 +206,24 @@ pub fn dispatch_level() -> Level {
     *LEVEL.get_or_init(Level::new)
 }
 
+/// The instruction set that every processor of the target has, for kernels that are not worth compiling for each set there is:
+/// tangents that are assembled, once for many products.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) fn baseline() -> impl Simd {
+    Level::baseline().as_sse2().expect("SSE2 is part of the target")
+}
+
+/// The same for ARM.
+#[cfg(target_arch = "aarch64")]
+pub(crate) fn baseline() -> impl Simd {
+    Level::baseline().as_neon().expect("NEON is part of the target")
+}
+
+/// The same for WebAssembly.
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn baseline() -> impl Simd {
+    Level::baseline().as_wasm_simd128().expect("simd128 is part of the target")
+}
+
 /// The widest batch of any scalar.
 pub const MAX_LANES: usize = 8;

@@ -9,6 +9,7 @@ mod sym3;
 mod vec3;
 
 pub use dual::Dual;
+pub(crate) use lanes::baseline;
 pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level};
 pub use mat3::Mat3;
 pub use real::Real;

@@ -7,7 +7,7 @@ use fearless_simd::{Simd, dispatch};
 use super::block_sink::{add_block_column, unit_displacement};
 use super::block_table::BlockTable;
 use super::{BlockSink, ModelError, Scratch};
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, baseline, dispatch_level};
 use crate::mesh::{MeshError, TetMesh};
 
 /// The most constants that a kernel may keep for an element.
@@ -193,7 +193,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         scratch.start(from);
         scratch.start_direction(to);
         let Scratch { nodal, direction, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_mean_forces_with(simd, nodal, direction, forces));
+        self.add_mean_forces_with(baseline(), nodal, direction, forces);
         scratch.finish(out);
     }
 
@@ -208,7 +208,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 
     pub(crate) fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
-        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+        self.add_blocks_with(baseline(), &scratch.nodal, sink);
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@ use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, dispatch_level};
+use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::block_sink::{BlockSink, add_block, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
@@ -272,12 +272,12 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
                     self.linearize(x, scratch);
                 }
                 let linearization = &scratch.linearization;
-                dispatch!(dispatch_level(), simd => self.add_linearized_blocks_with(simd, linearization, sink));
+                self.add_linearized_blocks_with(baseline(), linearization, sink);
                 scratch.is_linearized = was_linearized;
             }
             Tangent::Exact => {
                 scratch.start(x);
-                dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+                self.add_blocks_with(baseline(), &scratch.nodal, sink);
             }
         }
     }

@@ -6,7 +6,7 @@ use fearless_simd::{Simd, dispatch};
 
 use super::entity::{Corner, Entity, MAX_COLUMNS};
 use super::tensors::TetTensors;
-use crate::math::{Dual, Lanes, Real, Scalar, Vec3, dispatch_level};
+use crate::math::{Dual, Lanes, Real, Scalar, Vec3, baseline, dispatch_level};
 use crate::model::block_sink::{BlockSink, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::tet_loop::scatter_corner;
@@ -132,7 +132,7 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
 
     /// Gives the blocks of the derivative of the forces, weights held.
     pub(crate) fn add_blocks(&self, nodal: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
-        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, nodal, sink));
+        self.add_blocks_with(baseline(), nodal, sink);
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ use super::super::tet_loop::{gather_corner, scatter_corner};
 use super::super::{BlockSink, ForceModel, ModelError, Scratch};
 use super::TotalLagrangian;
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
+use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 
 /// Numbers stored for a Gauss point: eight gradients and a volume.
@@ -197,7 +197,7 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
-        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+        self.add_blocks_with(baseline(), &scratch.nodal, sink);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
