@@ -13,4 +13,5 @@ pub mod material;
 pub mod math;
 pub mod mesh;
 pub mod model;
+pub mod solver;
 pub mod world;

@@ -175,6 +175,19 @@ impl<T: Scalar> SimulatedBody<T> {
         self.boundary.surface(&self.state.removed)
     }
 
+    /// Volume of a cell over that at rest; negative for a cell that is inside out.
+    pub(crate) fn volume_ratio(&self, cell: usize) -> f64 {
+        let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
+        let volume = match &self.mesh {
+            VolumeMesh::Tet(mesh) => {
+                let [a, b, c, d] = mesh.cells[cell].map(place);
+                (b - a).dot((c - a).cross(d - a)) / 6.0
+            }
+            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
+        };
+        volume / self.cell_volumes[cell]
+    }
+
     /// Brings the internal forces up to date with positions and cells.
     pub(crate) fn update_internal_forces(&mut self) {
         let state = &mut self.state;

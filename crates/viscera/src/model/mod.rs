@@ -48,6 +48,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
         true
     }
 
+    /// How many rings of cells around a node its force depends on: 1, unless the model averages over neighbours.
+    fn rings(&self) -> usize {
+        1
+    }
+
     /// Size of the numbers that one evaluation of the forces reads from the model [bytes].
     fn bytes(&self) -> usize;
 

@@ -4,6 +4,7 @@ mod config;
 mod error;
 mod observables;
 mod snapshot;
+mod statics;
 mod step;
 
 pub use config::{Substep, WorldConfig};

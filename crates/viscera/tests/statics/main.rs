@@ -1,0 +1,6 @@
+//! Equilibria: against discrete solutions that other programs computed on the same meshes, and at the limit of what a law
+//! can bear.
+
+mod limits;
+mod reference;
+mod references;
