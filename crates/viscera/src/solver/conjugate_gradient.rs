@@ -1,5 +1,6 @@
 //! Conjugate gradients with the diagonal as preconditioner: what needs no factorisation, for large bodies and for programs
-//! without one.
+//! without one. A matrix that is not positive definite is noticed where a direction of the iteration meets a negative
+//! curvature, as it nearly always does; a factorisation is sure.
 //!
 //! Source: Hestenes, Stiefel, Methods of conjugate gradients for solving linear systems (1952).
 

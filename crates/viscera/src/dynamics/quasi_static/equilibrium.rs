@@ -77,6 +77,10 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
                 break;
             }
             if !self.search(&step, &forces, &residual, share) {
+                // Rounding has the last word: more so in tensor-mass, which sums powers of the displacement.
+                if reached <= T::EPSILON.to_f64().sqrt() {
+                    break;
+                }
                 return Err(StaticFailure::NoDescent { residual: reached });
             }
             (forces, residual, scale) = self.residual(share);

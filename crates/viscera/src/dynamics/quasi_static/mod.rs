@@ -27,8 +27,8 @@ use crate::solver::LinearSolver;
 /// Settings of the search for an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuasiStatic {
-    /// Residual at which to stop, relative to loads and reactions [> 0]; 1e-10 by default. What the rounding of positions
-    /// explains is accepted in any case, so that single precision stops too.
+    /// Residual at which to stop, relative to loads and reactions [> 0]; 1e-10 by default. Where rounding
+    /// stops the descent before that, below √ε (1.5e-8, or 3.5e-4 in single precision), that is accepted, and reported.
     pub tolerance: f64,
     /// The most iterations for a share of the load [≥ 1]; 30 by default.
     pub iterations: usize,
