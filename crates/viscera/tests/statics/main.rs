@@ -2,5 +2,6 @@
 //! can bear.
 
 mod limits;
+mod locking;
 mod reference;
 mod references;
