@@ -117,7 +117,7 @@ impl Painter<'_> {
             let place = [corner[0] + centre[0], corner[1] + centre[1]];
             let (mut colour, under) = self.solid(share.solid, place);
             if share.ghost != NOTHING {
-                colour = self.veil(&self.facets[share.ghost as usize], place, colour);
+                colour = self.veil(&self.facets[share.ghost as usize], place, colour, share.solid != NOTHING);
             }
             light += colour * (share.count as f32 / ALL as f32);
             if share.count > largest {
@@ -151,13 +151,15 @@ impl Painter<'_> {
         (ground.colour(self.view, place, backdrop), surface)
     }
 
-    /// `behind` seen through a ghost: denser where the ghost is seen edge-on, so that its outline reads.
-    fn veil(&self, facet: &Facet, place: [f64; 2], behind: Light) -> Light {
+    /// `behind` seen through a ghost: denser where the ghost is seen edge-on, so that its outline reads. Before a body only
+    /// the outline is drawn, so that the body keeps its colour.
+    fn veil(&self, facet: &Facet, place: [f64; 2], behind: Light, before_body: bool) -> Light {
         let hit = facet.at(place);
         let viewer = self.view.towards_viewer(hit.position).cast::<f32>();
         let normal = hit.normal.cast::<f32>();
         let grazing = 1.0 - normal.dot(viewer).clamp(0.0, 1.0);
-        let mut density = 0.20 + 0.5 * grazing * grazing * grazing;
+        let film = if before_body { 0.0 } else { 0.20 };
+        let mut density = film + 0.5 * grazing * grazing * grazing;
         if facet.wireframe {
             density += (1.0 - density) * 0.3 * line(hit.edge);
         }

@@ -11,7 +11,8 @@ use super::{WriteError, write_atomically};
 #[derive(Clone, Debug)]
 pub struct TimeSeries {
     path: PathBuf,
-    moments: Vec<(f64, String)>,
+    /// Time [s], number of the part, file.
+    moments: Vec<(f64, usize, String)>,
 }
 
 impl TimeSeries {
@@ -37,20 +38,35 @@ impl TimeSeries {
     /// # Errors
     /// [`WriteError::OutsideFolder`], or [`WriteError::Unwritable`] for the collection.
     pub fn add(&mut self, time: f64, file: &Path) -> Result<(), WriteError> {
+        self.add_parts(time, &[file])
+    }
+
+    /// Adds one moment that has several files, such as one for each body: ParaView shows them together, as parts 0, 1, …
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub fn add_parts(&mut self, time: f64, files: &[impl AsRef<Path>]) -> Result<(), WriteError> {
+        for (part, file) in files.iter().enumerate() {
+            let file = self.relative(file.as_ref())?;
+            self.moments.push((time, part, file));
+        }
+        write_atomically(&self.path, |out| {
+            writeln!(out, "<?xml version=\"1.0\"?>")?;
+            writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>")?;
+            for (time, part, file) in &self.moments {
+                let file = escaped(file);
+                writeln!(out, "<DataSet timestep=\"{time}\" group=\"\" part=\"{part}\" file=\"{file}\"/>")?;
+            }
+            writeln!(out, "</Collection>\n</VTKFile>")
+        })
+    }
+
+    /// The name of a file as seen from the folder of the collection.
+    fn relative(&self, file: &Path) -> Result<String, WriteError> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let relative = file
             .strip_prefix(folder)
             .map_err(|_| WriteError::OutsideFolder { file: file.to_owned(), collection: self.path.clone() })?;
-        let relative =
-            relative.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/");
-        self.moments.push((time, relative));
-        write_atomically(&self.path, |out| {
-            writeln!(out, "<?xml version=\"1.0\"?>")?;
-            writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>")?;
-            for (time, file) in &self.moments {
-                writeln!(out, "<DataSet timestep=\"{time}\" group=\"\" part=\"0\" file=\"{}\"/>", escaped(file))?;
-            }
-            writeln!(out, "</Collection>\n</VTKFile>")
-        })
+        Ok(relative.components().map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/"))
     }
 }

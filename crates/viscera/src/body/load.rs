@@ -1,6 +1,6 @@
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::{Region, RegionError, VolumeMesh};
+use crate::mesh::{LoadTriangle, Region, RegionError, VolumeMesh};
 
 /// What pulls or presses on a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ enum NodalLoad<T> {
         faces: Vec<FaceShare>,
     },
     Pressure {
-        faces: Vec<([u32; 3], u32)>,
+        faces: Vec<LoadTriangle>,
         pressure: Curve<f64>,
     },
 }
@@ -82,12 +82,11 @@ impl<T: Scalar> NodalLoad<T> {
             }
             Load::Traction { region, traction } => {
                 let triangles = region.surface_triangles(mesh).map_err(|error| ("a traction", error))?;
-                let area = |[a, b, c]: [u32; 3]| {
-                    let [a, b, c] = [a, b, c].map(|node| mesh.nodes()[node as usize]);
-                    0.5 * (b - a).cross(c - a).norm()
+                let share = |LoadTriangle { nodes, cell, weight }| {
+                    let [a, b, c] = nodes.map(|node| mesh.nodes()[node as usize]);
+                    FaceShare { nodes, cell, area: 0.5 * weight * (b - a).cross(c - a).norm() }
                 };
-                let faces =
-                    triangles.into_iter().map(|(nodes, cell)| FaceShare { nodes, cell, area: area(nodes) }).collect();
+                let faces = triangles.into_iter().map(share).collect();
                 Ok(Self::Shares { shares: Vec::new(), curve: traction.clone(), faces })
             }
             Load::Pressure { region, pressure } => {
@@ -114,11 +113,11 @@ impl<T: Scalar> NodalLoad<T> {
             }
             // −p n A/3 on each corner, with n A = ½ (b − a)×(c − a) the current outward area vector
             Self::Pressure { faces, pressure } => {
-                let sixth = T::from_f64(pressure.at(time) / 6.0);
-                for &(nodes, _) in faces.iter().filter(|&&(_, cell)| !removed[cell as usize]) {
-                    let [a, b, c] = nodes.map(|node| x[node as usize]);
-                    let force = (b - a).cross(c - a) * -sixth;
-                    for node in nodes {
+                let pressure = pressure.at(time);
+                for face in faces.iter().filter(|face| !removed[face.cell as usize]) {
+                    let [a, b, c] = face.nodes.map(|node| x[node as usize]);
+                    let force = (b - a).cross(c - a) * T::from_f64(-pressure * face.weight / 6.0);
+                    for node in face.nodes {
                         out[node as usize] += force;
                     }
                 }

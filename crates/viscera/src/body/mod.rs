@@ -1,5 +1,6 @@
 //! Bodies: what a user describes ([`Body`]), and what a world simulates ([`SimulatedBody`]).
 
+mod deformation;
 mod error;
 mod load;
 mod simulated;
@@ -13,7 +14,7 @@ pub(crate) use state::MotionBackup;
 pub use state::{BodyState, NodeMotion};
 
 use crate::curve::Curve;
-use crate::math::{Scalar, Vec3};
+use crate::math::Vec3;
 use crate::mesh::{Region, VolumeMesh};
 use crate::model::ModelRecipe;
 
@@ -39,12 +40,12 @@ use crate::model::ModelRecipe;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Body<T: Scalar> {
+pub struct Body {
     pub(crate) name: String,
     pub(crate) mesh: VolumeMesh,
     /// Density [kg/m³]: one number, or one for each cell.
     pub(crate) density: Vec<f64>,
-    pub(crate) model: Option<Box<dyn ModelRecipe<T>>>,
+    pub(crate) model: Option<Box<dyn ModelRecipe>>,
     pub(crate) keep_volume: f64,
     pub(crate) damping: f64,
     pub(crate) fixed: Vec<Region>,
@@ -63,7 +64,7 @@ pub enum LoosePieces {
     Drop,
 }
 
-impl<T: Scalar> Body<T> {
+impl Body {
     /// A body of `density` [kg/m³, > 0], undamped, unloaded and held by nothing.
     pub fn new(mesh: impl Into<VolumeMesh>, density: f64) -> Self {
         Self {
@@ -93,13 +94,13 @@ impl<T: Scalar> Body<T> {
     }
 
     /// The force model. There is no default: a body without one is refused.
-    pub fn model(mut self, recipe: impl ModelRecipe<T> + 'static) -> Self {
+    pub fn model(mut self, recipe: impl ModelRecipe + 'static) -> Self {
         self.model = Some(Box::new(recipe));
         self
     }
 
     /// The force model, chosen while the program runs.
-    pub fn boxed_model(mut self, recipe: Box<dyn ModelRecipe<T>>) -> Self {
+    pub fn boxed_model(mut self, recipe: Box<dyn ModelRecipe>) -> Self {
         self.model = Some(recipe);
         self
     }

@@ -2,8 +2,8 @@ use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, N
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
-use crate::model::frequency::{FrequencyBound, frequency_bound};
-use crate::model::{ModelKind, Scratch, VolumePenalty};
+use crate::model::frequency::FrequencyBound;
+use crate::model::{ModelKind, Precision, Scratch};
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -50,19 +50,22 @@ pub struct SurfaceTriangle {
 }
 
 impl<T: Scalar> SimulatedBody<T> {
-    pub(crate) fn new(body: Body<T>) -> Result<Self, BodyError> {
+    pub(crate) fn new(body: Body) -> Result<Self, BodyError>
+    where
+        T: Precision,
+    {
         let Body { name, mesh, density, model, keep_volume, damping, fixed, prescribed, loads, loose_pieces } = body;
         let body = || name.clone();
         check_range(&name, "damping", damping, damping >= 0.0, "zero or positive [1/s]")?;
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
-        let mut models = vec![recipe.build(&mesh).map_err(model_error)?];
+        let mut models = vec![T::build_model(recipe.as_ref(), &mesh).map_err(model_error)?];
         if keep_volume != 0.0 {
             let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
-            models.push(Box::new(VolumePenalty::new(tets, keep_volume).map_err(model_error)?));
+            models.push(T::build_volume_penalty(tets, keep_volume).map_err(model_error)?);
         }
-        let frequency = frequency_bound(&mesh, recipe.tissue(), &density, keep_volume).map_err(model_error)?;
+        let frequency = T::build_frequency_bound(recipe.as_ref(), &mesh, &density, keep_volume).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
@@ -95,7 +98,7 @@ impl<T: Scalar> SimulatedBody<T> {
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
-            scratch: Scratch::new(mesh.nodes().len()),
+            scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),
@@ -173,19 +176,6 @@ impl<T: Scalar> SimulatedBody<T> {
     /// The current surface, cut faces included.
     pub fn surface(&self) -> Vec<SurfaceTriangle> {
         self.boundary.surface(&self.state.removed)
-    }
-
-    /// Volume of a cell over that at rest; negative for a cell that is inside out.
-    pub(crate) fn volume_ratio(&self, cell: usize) -> f64 {
-        let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
-        let volume = match &self.mesh {
-            VolumeMesh::Tet(mesh) => {
-                let [a, b, c, d] = mesh.cells[cell].map(place);
-                (b - a).dot((c - a).cross(d - a)) / 6.0
-            }
-            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
-        };
-        volume / self.cell_volumes[cell]
     }
 
     /// Brings the internal forces up to date with positions and cells.

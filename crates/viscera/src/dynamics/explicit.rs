@@ -12,6 +12,7 @@
 
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::math::{Scalar, Vec3};
+use crate::model::Scratch;
 
 /// Share of the stability limit 2/ω_max that automatic sub-steps use: room for the tissue to stiffen within a step.
 const SAFETY: f64 = 0.9;
@@ -24,6 +25,15 @@ pub fn stable_step(squared_frequency: f64) -> f64 {
 /// Sub-steps of equal length that divide `step` [s] with a margin to the stability limit; at least 1.
 pub fn substeps_for(step: f64, squared_frequency: f64) -> f64 {
     (step / (SAFETY * stable_step(squared_frequency))).ceil().max(1.0)
+}
+
+impl<T: Scalar> SimulatedBody<T> {
+    /// Longest stable step of the explicit scheme as the body is now [s]; infinite where nothing vibrates.
+    pub fn stable_step(&self) -> f64 {
+        let positions = &self.state.positions;
+        let measure = || self.frequency.squared_frequency(positions, &mut Scratch::new(positions.len()));
+        stable_step(self.state.squared_frequency.unwrap_or_else(measure))
+    }
 }
 
 /// What drives the nodes that forces do not move, over one sub-step.

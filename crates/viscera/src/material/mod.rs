@@ -1,4 +1,4 @@
-//! Laws: how tissue stores energy when it is deformed. One law is one file; [`registry`] is the only list of them.
+//! Laws: how tissue stores energy when it is deformed. One law is one file; `registry.rs` is the only list of them.
 //!
 //! Adding a law: a file with a struct of parameters generic over [`Real`], [`Law`] and [`LawFamily`] for it, and one line
 //! in the registry. Conformance tests, scenes and force models follow from there.

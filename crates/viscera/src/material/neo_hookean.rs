@@ -49,6 +49,10 @@ struct At<R> {
     shape: [R; 3],
     /// ∂ψ/∂J at constant I_C.
     pressure: R,
+    /// The same with μ g added, which vanishes at rest without a rounding.
+    excess_pressure: R,
+    /// F − cof F, which vanishes at rest without a rounding.
+    difference: Mat3<R>,
 }
 
 impl<R: Real> NeoHookean<R> {
@@ -58,23 +62,37 @@ impl<R: Real> NeoHookean<R> {
         self.mu.mul_add(self.mu.like(2.0 / 3.0), self.lambda)
     }
 
+    // With H = F − I and f = −3/2 g', which is g/J above the parabola: g F − f I_C/3 cof F =
+    // g (F − cof F) + [f (J − I_C/3) + (g − f J)] cof F, whose terms of order H⁰ are gone one by one. They would leave only
+    // roundings at small strain.
     #[inline(always)]
     fn at_deformation(&self, f: &Mat3<R>) -> At<R> {
-        let (square, cofactor) = (f.squared_norm(), f.cofactor());
-        let determinant = f.columns[0].dot(cofactor.columns[0]);
         let one = self.mu.like(1.0);
-        let kept = determinant.max(one.like(SMALLEST_VOLUME));
-        let below = determinant - kept;
+        let h = *f - f.identity_like();
+        let (trace, minors) = (h.trace(), h.cofactor());
+        let change = trace + (minors.trace() + h.columns[0].dot(minors.columns[0]));
+        let excess = trace.double() + h.squared_norm();
+        let kept_change = change.max(one.like(SMALLEST_VOLUME - 1.0));
+        let (kept, below) = (kept_change + one, change - kept_change);
         let inverse = one / kept;
         let g = one / kept.cbrt().squared();
         let curvature = g * inverse.squared() * one.like(10.0 / 9.0);
-        // −3/2 g', which is exactly 1 at rest, so that rest is exactly without stress
         let fall = g * inverse - curvature * below * one.like(1.5);
-        let slope = fall * one.like(-2.0 / 3.0);
         let at_kept = g * inverse * one.like(-2.0 / 3.0);
-        let shape = [curvature.half().mul_add(below, at_kept).mul_add(below, g), slope, curvature];
-        let pressure = self.bulk() * (determinant - one) - self.mu * fall * (square * one.like(1.0 / 3.0));
-        At { square, cofactor, determinant, shape, pressure }
+        let parabola = curvature.half().mul_add(below, at_kept) * below;
+        let beyond = parabola + curvature * below * kept * one.like(1.5);
+        let shape = [g + parabola, fall * one.like(-2.0 / 3.0), curvature];
+        let third = one.like(1.0 / 3.0);
+        let excess_pressure = self.bulk() * change + self.mu * (fall * (kept_change - excess * third) + beyond);
+        At {
+            square: excess + one.like(3.0),
+            cofactor: f.cofactor(),
+            determinant: change + one,
+            shape,
+            pressure: excess_pressure - self.mu * shape[0],
+            excess_pressure,
+            difference: h + h.transpose() - f.identity_like() * trace - minors,
+        }
     }
 }
 
@@ -103,8 +121,8 @@ impl<R: Real> Law<R> for NeoHookean<R> {
 
     #[inline(always)]
     fn stress(&self, f: &Mat3<R>) -> Mat3<R> {
-        let At { cofactor, shape: [g, ..], pressure, .. } = self.at_deformation(f);
-        *f * (self.mu * g) + cofactor * pressure
+        let At { cofactor, shape: [g, ..], excess_pressure, difference, .. } = self.at_deformation(f);
+        difference * (self.mu * g) + cofactor * excess_pressure
     }
 
     #[inline(always)]
@@ -119,12 +137,14 @@ impl<R: Real> Law<R> for NeoHookean<R> {
     }
 
     // The terms with F and cof F: A (c:dF)² + 2B (F:dF)(c:dF), whose largest eigenvalue is that of a 2×2 matrix, with
-    // F:c = 3J.
+    // F:c = 3J. For c:c = Σσ², of the stretches σ of c, stands 3 (⅓Σσ⁸)^¼: as much at rest and more elsewhere, because cells
+    // feel the largest stretch, and three times as much of it as of the sum.
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
-        let At { square, cofactor, determinant, shape: [g, slope, curvature], pressure } = self.at_deformation(f);
+        let At { square, cofactor, determinant, shape: [g, slope, curvature], pressure, .. } = self.at_deformation(f);
         let (a, b) = ((self.mu * curvature * square).half() + self.bulk(), self.mu * slope);
-        let area = cofactor.squared_norm();
+        let eighth_powers = Mat3::from(cofactor.gram()).gram().squared_norm();
+        let area = eighth_powers.sqrt().sqrt() * a.like(3.0_f64.powf(0.75));
         let trace = a * area + b * determinant * a.like(6.0);
         let apart = (square * area - (determinant * a.like(3.0)).squared()).max(a.zero_like());
         let largest = (trace + (trace.squared() + (b.squared() * apart) * a.like(4.0)).sqrt()).half();

@@ -7,12 +7,13 @@ pub struct Tissue {
     /// Parameter values, law after law; one law, or one for each cell.
     values: Vec<f64>,
     stride: usize,
+    uniform: bool,
 }
 
 impl Tissue {
     /// The same law in every cell.
     pub fn uniform<L: LawFamily>(law: L) -> Self {
-        Self { values: law.values(), stride: L::PARAMETERS.len(), kind: law.into() }
+        Self { values: law.values(), stride: L::PARAMETERS.len(), uniform: true, kind: law.into() }
     }
 
     /// One law for each cell, in the order of the mesh's cells.
@@ -26,6 +27,7 @@ impl Tissue {
             kind: first.into(),
             values: laws.iter().flat_map(LawFamily::values).collect(),
             stride: L::PARAMETERS.len(),
+            uniform: false,
         })
     }
 
@@ -36,7 +38,7 @@ impl Tissue {
 
     /// Whether every cell has the same parameters.
     pub fn is_uniform(&self) -> bool {
-        self.values.len() == self.stride
+        self.uniform
     }
 
     /// Parameter values of the law in `cell`.

@@ -30,6 +30,8 @@ impl<R: Real> Dual<R> {
 impl<R: Real> Real for Dual<R> {
     type Mask = R::Mask;
 
+    const ROUNDING: f64 = R::ROUNDING;
+
     #[inline(always)]
     fn like(self, value: f64) -> Self {
         Self::constant(self.value.like(value))
@@ -76,6 +78,10 @@ impl<R: Real> Real for Dual<R> {
             R::select(mask, if_true.value, if_false.value),
             R::select(mask, if_true.derivative, if_false.derivative),
         )
+    }
+    #[inline(always)]
+    fn any(mask: Self::Mask) -> bool {
+        R::any(mask)
     }
 }
 

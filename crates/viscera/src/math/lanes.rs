@@ -128,6 +128,8 @@ macro_rules! impl_lanes {
         impl<S: Simd> Real for $lanes<S> {
             type Mask = <$lanes<S> as SimdBase<S>>::Mask;
 
+            const ROUNDING: f64 = <$scalar>::EPSILON as f64;
+
             #[inline(always)]
             fn like(self, value: f64) -> Self {
                 SimdBase::splat(self.token(), value as $scalar)
@@ -171,6 +173,10 @@ macro_rules! impl_lanes {
             #[inline(always)]
             fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
                 mask.select(if_true, if_false)
+            }
+            #[inline(always)]
+            fn any(mask: Self::Mask) -> bool {
+                mask.any_true()
             }
         }
     };

@@ -1,6 +1,6 @@
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
-use super::{Real, Scalar, Sym3, Vec3};
+use super::{Dual, Real, Scalar, Sym3, Vec3};
 
 /// A 3×3 matrix, stored by columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,6 +79,18 @@ impl<R: Real> Mat3<R> {
     pub fn squared_norm(self) -> R {
         self.contract(self)
     }
+    /// `if_true` where the mask holds, `if_false` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, if_true: Self, if_false: Self) -> Self {
+        let ([a, b, c], [d, e, f]) = (if_true.columns, if_false.columns);
+        Self::from_columns(Vec3::select(mask, a, d), Vec3::select(mask, b, e), Vec3::select(mask, c, f))
+    }
+    /// The vector a with [a]× = A − Aᵀ: twice the axis of the skew part.
+    #[inline(always)]
+    pub fn double_axis(self) -> Vec3<R> {
+        let [a, b, c] = self.columns;
+        Vec3::new(b.z - c.y, c.x - a.z, a.y - b.x)
+    }
     /// Aᵀ v.
     #[inline(always)]
     pub fn transpose_mul(self, v: Vec3<R>) -> Vec3<R> {
@@ -95,6 +107,18 @@ impl<R: Real> Mat3<R> {
     pub fn symmetric_part(self) -> Sym3<R> {
         let [a, b, c] = self.columns;
         Sym3 { xx: a.x, yy: b.y, zz: c.z, xy: (a.y + b.x).half(), xz: (a.z + c.x).half(), yz: (b.z + c.y).half() }
+    }
+}
+
+impl<R: Real> Mat3<Dual<R>> {
+    /// The matrix `value` that changes by `derivative`.
+    #[inline(always)]
+    pub fn with_derivative(value: &Mat3<R>, derivative: &Mat3<R>) -> Self {
+        let dual = |i: usize| {
+            let (v, d) = (value.columns[i], derivative.columns[i]);
+            Vec3::new(Dual::new(v.x, d.x), Dual::new(v.y, d.y), Dual::new(v.z, d.z))
+        };
+        Self::from_columns(dual(0), dual(1), dual(2))
     }
 }
 

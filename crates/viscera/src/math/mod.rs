@@ -4,6 +4,7 @@ mod dual;
 mod lanes;
 mod mat3;
 mod real;
+pub mod rotation;
 mod sym3;
 mod vec3;
 

@@ -22,6 +22,9 @@ pub trait Real:
     /// The result of a comparison: `bool`, or one truth value per lane.
     type Mask: Copy;
 
+    /// Distance from 1 to the next larger number: the largest relative error of two roundings.
+    const ROUNDING: f64;
+
     /// The constant `value`, in every lane.
     fn like(self, value: f64) -> Self;
     /// `self * factor + addend`, fused where the hardware has it.
@@ -42,6 +45,8 @@ pub trait Real:
     fn less_than(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, `if_false` elsewhere.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
+    /// Whether the mask holds in any lane.
+    fn any(mask: Self::Mask) -> bool;
 
     /// Zero, in every lane.
     #[inline(always)]
@@ -69,6 +74,8 @@ macro_rules! impl_real_for_scalar {
     ($scalar:ty) => {
         impl Real for $scalar {
             type Mask = bool;
+
+            const ROUNDING: f64 = <$scalar>::EPSILON as f64;
 
             #[inline(always)]
             fn like(self, value: f64) -> Self {
@@ -110,6 +117,10 @@ macro_rules! impl_real_for_scalar {
             #[inline(always)]
             fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
                 if mask { if_true } else { if_false }
+            }
+            #[inline(always)]
+            fn any(mask: bool) -> bool {
+                mask
             }
         }
     };

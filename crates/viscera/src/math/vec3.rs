@@ -64,6 +64,15 @@ impl<R: Real> Vec3<R> {
     pub fn norm(self) -> R {
         self.squared_norm().sqrt()
     }
+    /// `if_true` where the mask holds, `if_false` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, if_true: Self, if_false: Self) -> Self {
+        Self::new(
+            R::select(mask, if_true.x, if_false.x),
+            R::select(mask, if_true.y, if_false.y),
+            R::select(mask, if_true.z, if_false.z),
+        )
+    }
     /// Component-wise minimum.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {

@@ -86,6 +86,26 @@ impl HexMesh {
         rule.points().into_iter().map(point).collect()
     }
 
+    /// The averages of the four edges in each of a cell's three directions [m], as columns.
+    pub fn mean_edges(&self, cell: usize) -> Mat3<f64> {
+        jacobian(&self.corners(cell), &reference_gradients([0.0; 3])) * 2.0
+    }
+
+    /// Gradients of the eight shape functions at the centre of a cell [1/m]; what they make of the corners is the
+    /// deformation of its mean edges.
+    ///
+    /// # Errors
+    /// [`MeshError::Degenerate`] where the mean edges lie in a plane.
+    pub fn centre_gradients(&self, cell: usize) -> Result<[Vec3<f64>; 8], MeshError> {
+        let local = reference_gradients([0.0; 3]);
+        let inverse = jacobian(&self.corners(cell), &local).inverse();
+        if inverse.is_finite() {
+            Ok(local.map(|gradient| inverse.transpose_mul(gradient)))
+        } else {
+            Err(MeshError::Degenerate { cell, corners: self.cells[cell].to_vec() })
+        }
+    }
+
     /// Volume of a cell [m³].
     pub fn cell_volume(&self, cell: usize) -> f64 {
         hexahedron_volume(&self.corners(cell))

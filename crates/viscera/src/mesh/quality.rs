@@ -203,18 +203,7 @@ impl HexMesh {
     /// Scaled Jacobian of a cell: the smallest, over its corners, of the volume spanned by the three edges there, each
     /// scaled to length one. 1 for a box, 0 or less where a corner is flat or turned inside out.
     pub fn scaled_jacobian(&self, cell: usize) -> f64 {
-        // The three edges that leave each corner, right-handed.
-        const SPOKES: [[usize; 3]; 8] =
-            [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
-        let corners = self.corners(cell);
-        let at_corner = |corner: usize| {
-            let [p, q, r] = SPOKES[corner].map(|end| (corners[end] - corners[corner]).normalized());
-            match (p, q, r) {
-                (Some(p), Some(q), Some(r)) => p.dot(q.cross(r)),
-                _ => 0.0,
-            }
-        };
-        (0..8).map(at_corner).fold(f64::INFINITY, f64::min)
+        scaled_jacobian(&self.corners(cell))
     }
 
     /// Scaled Jacobians of all cells, with the worst cell; nothing for a mesh without cells.
@@ -223,4 +212,19 @@ impl HexMesh {
         let worst = (0..values.len()).min_by(|&a, &b| values[a].total_cmp(&values[b]))?;
         Some((Spread::of(values.into_iter()), worst))
     }
+}
+
+/// [`HexMesh::scaled_jacobian`] of a cell with these corners [m].
+pub fn scaled_jacobian(corners: &[Point; 8]) -> f64 {
+    // The three edges that leave each corner, right-handed.
+    const SPOKES: [[usize; 3]; 8] =
+        [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
+    let at_corner = |corner: usize| {
+        let [p, q, r] = SPOKES[corner].map(|end| (corners[end] - corners[corner]).normalized());
+        match (p, q, r) {
+            (Some(p), Some(q), Some(r)) => p.dot(q.cross(r)),
+            _ => 0.0,
+        }
+    };
+    (0..8).map(at_corner).fold(f64::INFINITY, f64::min)
 }

@@ -49,6 +49,17 @@ pub enum Region {
     Intersection(Vec<Region>),
 }
 
+/// A triangle of the surface that a load acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadTriangle {
+    /// Corners, counter-clockwise seen from outside.
+    pub nodes: [u32; 3],
+    /// The cell behind it.
+    pub cell: u32,
+    /// The share of its area that counts: where triangles overlap, less than 1.
+    pub weight: f64,
+}
+
 /// A region that selects nothing, or cannot.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RegionError {
@@ -153,13 +164,16 @@ impl Region {
         if cells.is_empty() { Err(self.empty(mesh)) } else { Ok(cells) }
     }
 
-    /// Triangles of the outward surface whose corners all lie in the region, each with the cell behind it.
+    /// Triangles of the outward surface whose corners all lie in the region: what carries a pressure.
+    ///
+    /// A face of a hexahedron comes twice, halved along each diagonal, with half the weight: halved along one alone, its
+    /// corners would carry a third and a sixth of a load instead of a quarter each, and a pressed column would bend.
     ///
     /// A named group of faces selects just its faces, with their neighbours left out even where all corners belong.
     ///
     /// # Errors
     /// As [`Region::nodes`], and [`RegionError::NoFaces`].
-    pub fn surface_triangles(&self, mesh: &VolumeMesh) -> Result<Vec<([u32; 3], u32)>, RegionError> {
+    pub fn surface_triangles(&self, mesh: &VolumeMesh) -> Result<Vec<LoadTriangle>, RegionError> {
         let inside = self.membership(mesh)?;
         let listed = match self {
             Self::Named(name) => named_faces(mesh, name),
@@ -179,13 +193,15 @@ impl Region {
                 .faces
                 .iter()
                 .filter(|face| face.cells.1.is_none() && chosen(&face.nodes))
-                .map(|face| (face.nodes, face.cells.0))
+                .map(|face| LoadTriangle { nodes: face.nodes, cell: face.cells.0, weight: 1.0 })
                 .collect(),
             VolumeMesh::Hex(mesh) => mesh
                 .faces()
                 .into_iter()
                 .filter(|face| face.cells.1.is_none() && chosen(&face.nodes))
-                .flat_map(|Face { nodes: [a, b, c, d], cells: (cell, _) }| [([a, b, c], cell), ([a, c, d], cell)])
+                .flat_map(|Face { nodes: [a, b, c, d], cells: (cell, _) }| {
+                    [[a, b, c], [a, c, d], [a, b, d], [b, c, d]].map(|nodes| LoadTriangle { nodes, cell, weight: 0.5 })
+                })
                 .collect(),
         };
         if triangles.is_empty() { Err(RegionError::NoFaces { region: self.describe() }) } else { Ok(triangles) }

@@ -23,11 +23,6 @@ pub enum ModelError {
         /// The model.
         model: ModelKind,
     },
-    /// Nodal pressures are made for tetrahedra.
-    #[error(
-        "nodal pressures work on tetrahedra, and the mesh is made of hexahedra; leave them out, or take tetrahedra"
-    )]
-    NodalPressureOnHexahedra,
     /// A setting of the model is out of range.
     #[error("{name} = {value} is out of range: it must be {range}")]
     OutOfRange {

@@ -58,7 +58,7 @@ impl<T: Scalar> LawVisitor for Build<'_, T> {
 }
 
 /// λ_max(K_e)/m at rest [1/s²] for a cell with these points and corner mass, from above by at most 3 %.
-fn squared_frequency_at_rest<L: LawFamily>(law: &L, points: &[(&[Vec3<f64>], f64)], corner_mass: f64) -> f64 {
+pub(crate) fn squared_frequency_at_rest<L: Law<f64>>(law: &L, points: &[(&[Vec3<f64>], f64)], corner_mass: f64) -> f64 {
     let size = 3 * points[0].0.len();
     let mut stiffness = vec![0.0; size * size];
     for &(gradients, volume) in points {
@@ -135,7 +135,7 @@ impl<L: LawFamily> TetMeasure for FrequencyMeasure<L> {
 
 /// Bound of what W = κ V0 |δ|³/3 adds to ∂P/∂F: 2κ|δ| ‖cof F‖² along the change of volume, κδ²‖F‖ across it.
 #[inline(always)]
-fn volume_stiffness<R: Real>(kappa: R, f: &Mat3<R>) -> R {
+pub(crate) fn volume_stiffness<R: Real>(kappa: R, f: &Mat3<R>) -> R {
     let cofactor = f.cofactor();
     let delta = (f.columns[0].dot(cofactor.columns[0]) + kappa.like(-1.0)).abs();
     kappa * delta * (cofactor.squared_norm().double() + delta * f.squared_norm().sqrt())

@@ -35,7 +35,7 @@ impl LinearTensorMass {
     }
 }
 
-impl<T: Scalar> ModelRecipe<T> for LinearTensorMass {
+impl ModelRecipe for LinearTensorMass {
     fn kind(&self) -> ModelKind {
         ModelKind::LinearTensorMass
     }
@@ -44,7 +44,17 @@ impl<T: Scalar> ModelRecipe<T> for LinearTensorMass {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl LinearTensorMass {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::LinearTensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
         if !LAWS.contains(&self.tissue.kind()) {

@@ -1,22 +1,29 @@
-//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; [`registry`] lists them.
+//! Force models: how a law and a mesh become nodal forces. One model is one file or folder; `registry.rs` is the only list of them.
 
 mod block_table;
+pub mod corotational;
 mod error;
 pub mod frequency;
 pub mod linear_tensor_mass;
+pub mod nodally_integrated;
+mod precision;
 mod registry;
 pub mod tensor_mass;
 mod tet_loop;
 pub mod total_lagrangian;
 pub mod volume_penalty;
 
+pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
-pub use registry::{ModelInfo, ModelKind};
+pub use nodally_integrated::NodallyIntegrated;
+pub use precision::Precision;
+pub use registry::{Claims, ModelInfo, ModelKind};
 pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
+use self::frequency::{FrequencyBound, frequency_bound};
 use crate::material::Tissue;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -32,6 +39,15 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Adds the internal forces +∂W/∂x [N] at positions `x` [m] to `out`: what holds the nodes. The force that the
     /// tissue exerts on them is the negative.
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Prepares for products at `x` [m]: a model computes here, once, what all of them share, and keeps it in `scratch`.
+    /// Products and blocks up to the next call have to be at that `x`. Most models have nothing to prepare.
+    fn linearize(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) {}
+
+    /// How many numbers [`ForceModel::linearize`] keeps in the scratch.
+    fn linearization_len(&self) -> usize {
+        0
+    }
 
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
@@ -70,13 +86,23 @@ pub struct Scratch<T> {
     pub(crate) direction: Vec<[T; 4]>,
     /// Sums of forces.
     pub(crate) forces: Vec<[T; 4]>,
+    /// What a model keeps for products; the one model of a body that does.
+    pub(crate) linearization: Vec<T>,
+    /// Whether it has been filled.
+    pub(crate) is_linearized: bool,
 }
 
 impl<T: Scalar> Scratch<T> {
     /// Scratch for a body of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         let rows = || vec![[T::ZERO; 4]; nodes];
-        Self { nodal: rows(), direction: rows(), forces: rows() }
+        Self { nodal: rows(), direction: rows(), forces: rows(), linearization: Vec::new(), is_linearized: false }
+    }
+
+    /// Scratch for a body of `nodes` nodes, with room for all that its models keep: nothing is allocated later.
+    pub fn for_models(nodes: usize, models: &[Box<dyn ForceModel<T>>]) -> Self {
+        let kept = models.iter().map(|model| model.linearization_len()).max().unwrap_or(0);
+        Self { linearization: vec![T::ZERO; kept], ..Self::new(nodes) }
     }
 
     /// Fills the places with `x` and clears the forces.
@@ -88,6 +114,19 @@ impl<T: Scalar> Scratch<T> {
     /// Fills the directions with `dx`.
     pub(crate) fn start_direction(&mut self, dx: &[Vec3<T>]) {
         fill(&mut self.direction, dx);
+    }
+
+    /// Room for `len` numbers that a model keeps; scratch made for the body's models has it already.
+    pub(crate) fn room_for_linearization(&mut self, len: usize) -> &mut [T] {
+        self.linearization.resize(len, T::ZERO);
+        &mut self.linearization
+    }
+
+    /// The places, and room for `len` numbers that products will need; scratch made for the body's models has it already.
+    pub(crate) fn start_linearization(&mut self, len: usize) -> (&[[T; 4]], &mut [T]) {
+        self.linearization.resize(len, T::ZERO);
+        self.is_linearized = true;
+        (&self.nodal, &mut self.linearization)
     }
 
     /// Adds the forces to `out`.
@@ -107,16 +146,49 @@ fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
 }
 
 /// What is needed to build a model for a mesh: what the user writes.
-pub trait ModelRecipe<T: Scalar>: std::fmt::Debug + Send + Sync {
+pub trait ModelRecipe: std::fmt::Debug + Send + Sync {
     /// The kind of model.
     fn kind(&self) -> ModelKind;
 
     /// The tissue that it is made of.
     fn tissue(&self) -> &Tissue;
 
-    /// Builds the model.
+    /// Builds the model in single precision.
     ///
     /// # Errors
     /// [`ModelError`] where the model supports neither the law nor the cells, or a cell has no volume.
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError>;
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError>;
+
+    /// Builds the model in double precision.
+    ///
+    /// # Errors
+    /// As [`ModelRecipe::build_single`].
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError>;
+
+    /// The bound of the body's highest frequency in single precision, for one density [kg/m³] or one for each cell, and the
+    /// volume-keeping stiffness κ [Pa]. That of the law, unless the model makes something else of it.
+    ///
+    /// # Errors
+    /// [`ModelError::Mesh`] for a cell without volume.
+    fn bound_single(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
+        frequency_bound(mesh, self.tissue(), density, keep_volume)
+    }
+
+    /// The same in double precision.
+    ///
+    /// # Errors
+    /// As [`ModelRecipe::bound_single`].
+    fn bound_double(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
+        frequency_bound(mesh, self.tissue(), density, keep_volume)
+    }
 }

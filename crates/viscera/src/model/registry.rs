@@ -1,8 +1,7 @@
 //! The only list of force models.
 
-use super::{LinearTensorMass, ModelRecipe, TensorMass, TotalLagrangian};
-use crate::material::{LawKind, Tissue};
-use crate::math::Scalar;
+use super::{Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian};
+use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 
 /// What a user should know about a model before choosing it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +16,55 @@ pub struct ModelInfo {
     pub laws: &'static [LawKind],
 }
 
+/// What holds for a model of a law with its default settings; the conformance suites test all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Claims {
+    /// It is another text of the total-Lagrangian model of the law: same forces, products and energy.
+    pub of_the_law: bool,
+    /// Turning the body turns the forces and keeps the energy.
+    pub objective: bool,
+    /// Internal forces have no net force.
+    pub force_free: bool,
+    /// Internal forces have no net torque.
+    pub torque_free: bool,
+    /// Forces are the gradient of the energy.
+    pub conservative: bool,
+    /// Products are the derivative of the forces.
+    pub exact_products: bool,
+    /// Products are symmetric: a·K b = b·K a.
+    pub symmetric_products: bool,
+}
+
+impl Claims {
+    /// What holds for a model that computes `law` and nothing else.
+    pub fn of_law(law: LawKind) -> Self {
+        struct IsObjective;
+        impl LawVisitor for IsObjective {
+            type Output = bool;
+            fn visit<L: LawFamily>(self) -> bool {
+                L::OBJECTIVE
+            }
+        }
+        let objective = law.visit(IsObjective);
+        Self {
+            of_the_law: true,
+            objective,
+            force_free: true,
+            torque_free: objective,
+            conservative: true,
+            exact_products: true,
+            symmetric_products: true,
+        }
+    }
+}
+
+/// The claims of the models that compute their law and nothing else.
+fn whatever_the_cells(law: LawKind, _hexahedra: bool) -> Claims {
+    Claims::of_law(law)
+}
+
 macro_rules! models {
-    ($($recipe:ident),+ $(,)?) => {
+    ($($recipe:ident: $claims:expr),+ $(,)?) => {
         /// Every force model, by kind.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum ModelKind {
@@ -39,8 +85,15 @@ macro_rules! models {
                 }
             }
 
+            /// What holds for it when it computes `law`, on hexahedra or on tetrahedra.
+            pub fn claims(self, law: LawKind, hexahedra: bool) -> Claims {
+                match self {
+                    $(Self::$recipe => $claims(law, hexahedra),)+
+                }
+            }
+
             /// The model with its default settings, for this tissue.
-            pub fn recipe<T: Scalar>(self, tissue: Tissue) -> Box<dyn ModelRecipe<T>> {
+            pub fn recipe(self, tissue: Tissue) -> Box<dyn ModelRecipe> {
                 match self {
                     $(Self::$recipe => Box::new($recipe::new(tissue)),)+
                 }
@@ -49,7 +102,14 @@ macro_rules! models {
     };
 }
 
-models!(LinearTensorMass, TensorMass, TotalLagrangian);
+models!(
+    LinearTensorMass: whatever_the_cells,
+    TensorMass: whatever_the_cells,
+    TotalLagrangian: whatever_the_cells,
+    NodallyIntegrated: NodallyIntegrated::claims,
+    Corotational: Corotational::claims,
+    StiffnessWarping: StiffnessWarping::claims,
+);
 
 impl std::fmt::Display for ModelKind {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -81,8 +81,8 @@ impl RestTet {
 /// Tetrahedra in batches of lanes, with the constants of the kernel `K`.
 #[derive(Clone, Debug)]
 pub(crate) struct TetLoop<T: Scalar, K> {
-    pub(crate) corners: BlockTable<u32>,
-    pub(crate) constants: BlockTable<T>,
+    corners: BlockTable<u32>,
+    constants: BlockTable<T>,
     kernel: PhantomData<K>,
 }
 
@@ -161,7 +161,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces } = scratch;
+        let Scratch { nodal, direction, forces, .. } = scratch;
         dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
         scratch.finish(out);
     }
@@ -191,10 +191,7 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 }
 
 #[inline(always)]
-pub(crate) fn load_constants<T: Scalar, S: Simd, K: TetConstants>(
-    simd: S,
-    block: &[T],
-) -> [T::Lanes<S>; MAX_CONSTANTS] {
+fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_CONSTANTS] {
     let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
     for column in 0..K::CONSTANTS {
         constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
@@ -204,34 +201,13 @@ pub(crate) fn load_constants<T: Scalar, S: Simd, K: TetConstants>(
 
 /// Edge matrices of a batch; `nodes` holds the four corners, corner after corner.
 #[inline(always)]
-fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
-    gather_edges_and_sum(simd, x, nodes).0
-}
-
-/// Edge matrices of a batch, and the sums of the fourth numbers of the corners.
-#[inline(always)]
-pub(crate) fn gather_edges_and_sum<T: Scalar, S: Simd>(
-    simd: S,
-    x: &[[T; 4]],
-    nodes: &[u32],
-) -> (Mat3<T::Lanes<S>>, T::Lanes<S>) {
-    let (origin, a) = gather_row(simd, x, nodes, 0);
-    let (first, b) = gather_row(simd, x, nodes, 1);
-    let (second, c) = gather_row(simd, x, nodes, 2);
-    let (third, d) = gather_row(simd, x, nodes, 3);
-    (Mat3::from_columns(first - origin, second - origin, third - origin), a + b + (c + d))
-}
-
-/// Place and fourth number of one corner of a batch.
-#[inline(always)]
-fn gather_row<T: Scalar, S: Simd>(
-    simd: S,
-    x: &[[T; 4]],
-    nodes: &[u32],
-    corner: usize,
-) -> (Vec3<T::Lanes<S>>, T::Lanes<S>) {
-    let [x, y, z, w] = T::Lanes::<S>::gather(simd, x, &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
-    (Vec3::new(x, y, z), w)
+pub(crate) fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
+    let origin = gather_corner(simd, x, nodes, 0);
+    Mat3::from_columns(
+        gather_corner(simd, x, nodes, 1) - origin,
+        gather_corner(simd, x, nodes, 2) - origin,
+        gather_corner(simd, x, nodes, 3) - origin,
+    )
 }
 
 /// Places of one corner of a batch; `nodes` holds the corners of the batch, corner after corner.
@@ -242,7 +218,8 @@ pub(crate) fn gather_corner<T: Scalar, S: Simd>(
     nodes: &[u32],
     corner: usize,
 ) -> Vec3<T::Lanes<S>> {
-    gather_row(simd, x, nodes, corner).0
+    let [x, y, z, _] = T::Lanes::<S>::gather(simd, x, &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    Vec3::new(x, y, z)
 }
 
 /// Adds a force on one corner of a batch.

@@ -1,6 +1,6 @@
+use super::step::MAX_SUBSTEPS;
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
-use crate::dynamics::explicit;
 use crate::math::Scalar;
 
 /// Settings of a world.
@@ -20,7 +20,7 @@ pub enum Substep {
     /// As few as are stable, found anew in every step.
     #[default]
     Automatic,
-    /// Sub-steps no longer than this [s, > 0]. One that is not stable is refused when a body is added, and when the
+    /// Sub-steps no longer than this [s, > 0, at least a hundred-thousandth of the step]. One that is not stable is refused when a body is added, and when the
     /// tissue stiffens so much that it stops being so.
     Fixed(f64),
 }
@@ -44,6 +44,9 @@ impl WorldConfig {
             Substep::Fixed(value) if !(value.is_finite() && value > 0.0) => {
                 out_of_range("substep", value, "positive [s]")
             }
+            Substep::Fixed(value) if self.step / value > MAX_SUBSTEPS => {
+                out_of_range("substep", value, "at least a hundred-thousandth of the step [s]")
+            }
             _ => Ok(()),
         }
     }
@@ -51,8 +54,8 @@ impl WorldConfig {
 
 impl<T: Scalar> World<T> {
     /// Refuses a fixed sub-step at which the body would blow up.
-    pub(super) fn check_substep(&self, body: &mut SimulatedBody<T>) -> Result<(), WorldError> {
-        let stable = explicit::stable_step(body.squared_frequency());
+    pub(super) fn check_substep(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
+        let stable = body.stable_step();
         match self.config.substep {
             Substep::Fixed(substep) if substep > stable => {
                 Err(WorldError::UnstableSubstep { body: body.name().into(), substep, stable })

@@ -16,6 +16,7 @@ pub use step::StepReport;
 use crate::body::{Body, SimulatedBody};
 use crate::instrument::Instrument;
 use crate::math::{Scalar, Vec3};
+use crate::model::Precision;
 
 /// Number of a body in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -60,9 +61,12 @@ impl<T: Scalar> World<T> {
     /// # Errors
     /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
     /// at the fixed sub-step that was asked for, with the number that would do.
-    pub fn add(&mut self, body: Body<T>) -> Result<BodyId, WorldError> {
-        let mut body = SimulatedBody::new(body)?;
-        self.check_substep(&mut body)?;
+    pub fn add(&mut self, body: Body) -> Result<BodyId, WorldError>
+    where
+        T: Precision,
+    {
+        let body = SimulatedBody::new(body)?;
+        self.check_substep(&body)?;
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
         self.bodies.push(body);

@@ -2,7 +2,7 @@ use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::instrument::holding_force;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::VolumeMesh;
+use crate::mesh::{TetQuality, VolumeMesh, scaled_jacobian};
 
 /// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
 const REST_RATIO: f64 = 1e-8;
@@ -22,6 +22,9 @@ pub struct BodyObservables {
     pub angular_momentum: Vec3<f64>,
     /// Sum of the internal forces [N]: zero but for rounding, if the model keeps Newton's third law.
     pub net_internal_force: Vec3<f64>,
+    /// Sum of x×f of the internal forces about the centre of mass [N m]: zero but for rounding, if the model keeps
+    /// angular momentum.
+    pub net_internal_torque: Vec3<f64>,
     /// Mass of what is left [kg].
     pub mass: f64,
     /// Volume of what is left [m³].
@@ -36,6 +39,9 @@ pub struct BodyObservables {
     pub removed_cells: usize,
     /// Cells whose volume is negative.
     pub inverted_cells: usize,
+    /// Shape of the worst cell now: of tetrahedra the radius ratio (1 regular, 0 flat, negative inverted), of hexahedra the
+    /// scaled Jacobian (1 for a box, 0 or less where a corner is flat or turned inside out); 1 for a body without cells.
+    pub worst_quality: f64,
     /// Nodes at which the full law acts; all of them, unless the model is linear or adaptive.
     pub nonlinear_nodes: usize,
     /// Whether the kinetic energy has died down to a hundred-millionth of the elastic energy.
@@ -98,16 +104,33 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Current volumes of the cells that are left, with their volumes at rest [m³].
     fn volumes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
+        left.map(|cell| (self.cell_volume(cell), self.cell_volumes[cell]))
+    }
+
+    /// Torque of the internal forces about the centre of mass [N m].
+    fn net_internal_torque(&self) -> Vec3<f64> {
+        let state = &self.state;
+        let place = |node: usize| state.positions[node].cast::<f64>();
+        let (mut mass, mut moment) = (0.0, Vec3::ZERO);
+        for (node, m) in state.masses.iter().map(|m| m.to_f64()).enumerate() {
+            mass += m;
+            moment += place(node) * m;
+        }
+        let centre = if mass > 0.0 { moment / mass } else { moment };
+        let torque = |node: usize| (place(node) - centre).cross(state.internal_forces[node].cast());
+        (0..state.positions.len()).fold(Vec3::ZERO, |sum, node| sum + torque(node))
+    }
+
+    /// Shape of the worst cell that is left.
+    fn worst_quality(&self) -> f64 {
         let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
-        let volume = move |cell: usize| match &self.mesh {
-            VolumeMesh::Tet(mesh) => {
-                let [a, b, c, d] = mesh.cells[cell].map(place);
-                (b - a).dot((c - a).cross(d - a)) / 6.0
-            }
-            VolumeMesh::Hex(mesh) => crate::mesh::hexahedron_volume(&mesh.cells[cell].map(place)),
+        let quality = |cell: usize| match &self.mesh {
+            VolumeMesh::Tet(mesh) => TetQuality::of(mesh.cells[cell].map(place)).radius_ratio,
+            VolumeMesh::Hex(mesh) => scaled_jacobian(&mesh.cells[cell].map(place)),
         };
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
-        left.map(move |cell| (volume(cell), self.cell_volumes[cell]))
+        left.map(quality).fold(1.0, f64::min)
     }
 
     fn observe(&self, gravity: Vec3<f64>) -> BodyObservables {
@@ -132,6 +155,7 @@ impl<T: Scalar> SimulatedBody<T> {
                 nonlinear_nodes += 1;
             }
         }
+        let net_internal_torque = self.net_internal_torque();
         let elastic = state.models.iter().map(|model| model.energy(&state.positions)).sum::<f64>();
         let (mut volume, mut rest_volume, mut inverted_cells) = (0.0, 0.0, 0);
         for (now, rest) in self.volumes() {
@@ -146,6 +170,7 @@ impl<T: Scalar> SimulatedBody<T> {
             momentum,
             angular_momentum,
             net_internal_force,
+            net_internal_torque,
             mass,
             volume,
             volume_variation: if rest_volume > 0.0 { volume / rest_volume - 1.0 } else { 0.0 },
@@ -153,6 +178,7 @@ impl<T: Scalar> SimulatedBody<T> {
             reaction,
             removed_cells: state.removed_count,
             inverted_cells,
+            worst_quality: self.worst_quality(),
             nonlinear_nodes,
             at_rest: kinetic <= REST_RATIO * elastic,
         }

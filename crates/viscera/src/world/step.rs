@@ -7,7 +7,7 @@ use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 
 /// The most sub-steps of one step.
-const MAX_SUBSTEPS: f64 = 1e5;
+pub(super) const MAX_SUBSTEPS: f64 = 1e5;
 /// How many times a step is tried again with more sub-steps.
 const MAX_RETRIES: u32 = 5;
 
@@ -55,35 +55,51 @@ impl<T: Scalar> World<T> {
 
     /// Moves the bodies over the step with as many sub-steps as it takes; gives these, and how often it was tried again.
     fn move_bodies(&mut self, span: &Span) -> Result<(u32, u32), StepError> {
-        let mut frequency = self.squared_frequency();
+        let mut fastest = self.fastest();
         for retries in 0..=MAX_RETRIES {
-            let substeps = self.plan_substeps(frequency)?;
+            let substeps = match self.plan_substeps(fastest) {
+                // What an attempt that ran away says of stiffness means nothing.
+                Err(StepError::TooStiff { .. }) if retries > 0 => return Err(self.diverged()),
+                plan => plan?,
+            };
             self.grip(span);
             self.advance(span, substeps);
             let finite = self.bodies.iter().all(|body| body.state.is_finite());
-            if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(self.squared_frequency()) {
+            let at_end = if finite { self.fastest() } else { fastest };
+            if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(at_end.squared_frequency) {
                 return Ok((substeps, retries));
             }
             // The tissue stiffened on the way: once more, for the stiffness at its end, or else for twice as many steps.
-            frequency = if finite { frequency.max(self.squared_frequency()) } else { 4.0 * frequency };
+            if !finite {
+                fastest.squared_frequency *= 4.0;
+            } else if at_end.squared_frequency > fastest.squared_frequency {
+                fastest = at_end;
+            }
             self.undo();
         }
         Err(self.diverged())
     }
 
-    /// Bound of ω_max² over all bodies [1/s²].
-    fn squared_frequency(&mut self) -> f64 {
-        self.bodies.iter_mut().map(SimulatedBody::squared_frequency).fold(0.0, f64::max)
+    /// The body that vibrates fastest.
+    fn fastest(&mut self) -> Fastest {
+        let mut fastest = Fastest { body: 0, squared_frequency: 0.0 };
+        for (body, simulated) in self.bodies.iter_mut().enumerate() {
+            let squared_frequency = simulated.squared_frequency();
+            if squared_frequency > fastest.squared_frequency {
+                fastest = Fastest { body, squared_frequency };
+            }
+        }
+        fastest
     }
 
-    fn plan_substeps(&mut self, squared_frequency: f64) -> Result<u32, StepError> {
+    fn plan_substeps(&self, fastest: Fastest) -> Result<u32, StepError> {
         let step = self.config.step;
         let needed = match self.config.substep {
-            Substep::Automatic => explicit::substeps_for(step, squared_frequency),
+            Substep::Automatic => explicit::substeps_for(step, fastest.squared_frequency),
             Substep::Fixed(substep) => {
-                let stable = explicit::stable_step(squared_frequency);
+                let stable = explicit::stable_step(fastest.squared_frequency);
                 if substep > stable {
-                    let body = self.most_deformed().0.name.clone();
+                    let body = self.bodies[fastest.body].name.clone();
                     return Err(StepError::UnstableSubstep { time: self.time(), body, substep, stable });
                 }
                 (step / substep).ceil().max(1.0)
@@ -92,9 +108,10 @@ impl<T: Scalar> World<T> {
         if needed <= MAX_SUBSTEPS {
             return Ok(needed as u32);
         }
-        let time = self.time();
-        let (body, cell, stretch) = self.most_deformed();
-        Err(StepError::TooStiff { time, body: body.name.clone(), law: body.law, cell, stretch, substeps: needed, step })
+        let body = &self.bodies[fastest.body];
+        let (cell, stretch) = most_deformed_cell(body);
+        let (time, law) = (self.time(), body.law);
+        Err(StepError::TooStiff { time, body: body.name.clone(), law, cell, stretch, substeps: needed, step })
     }
 
     /// Lets instruments take hold or let go.
@@ -145,7 +162,9 @@ impl<T: Scalar> World<T> {
     }
 
     fn diverged(&self) -> StepError {
-        let (body, cell, stretch) = self.most_deformed();
+        let deformed = self.bodies.iter().map(|body| (body, most_deformed_cell(body)));
+        let (body, (cell, stretch)) =
+            deformed.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1)).expect("a world without bodies never diverges");
         let advice = if body.law.contains("st-venant-kirchhoff") {
             "This law loses its strength under strong compression: pull or press less, stiffen the tissue, or keep its \
              volume with `keep-volume`"
@@ -154,25 +173,30 @@ impl<T: Scalar> World<T> {
         };
         StepError::Diverged { time: self.time(), body: body.name.clone(), law: body.law, cell, stretch, advice }
     }
+}
 
-    /// The cell with the longest edge compared to rest: its body, its number, and the ratio of the lengths.
-    fn most_deformed(&self) -> (&SimulatedBody<T>, usize, f64) {
-        let mut worst = (&self.bodies[0], 0, 0.0);
-        for body in &self.bodies {
-            for cell in (0..body.mesh.cell_count()).filter(|&cell| !body.state.removed[cell]) {
-                let corners = body.mesh.cell(cell);
-                for (i, &a) in corners.iter().enumerate() {
-                    for &b in &corners[..i] {
-                        let (a, b) = (a as usize, b as usize);
-                        let length = (body.state.positions[a] - body.state.positions[b]).norm().to_f64();
-                        let ratio = length / (body.rest[a] - body.rest[b]).norm().to_f64();
-                        if ratio > worst.2 {
-                            worst = (body, cell, ratio);
-                        }
-                    }
+/// A body, by its place in the world, and the bound of its ω_max² [1/s²].
+#[derive(Clone, Copy, Debug)]
+struct Fastest {
+    body: usize,
+    squared_frequency: f64,
+}
+
+/// The cell with the longest edge compared to rest, and the ratio of the lengths.
+fn most_deformed_cell<T: Scalar>(body: &SimulatedBody<T>) -> (usize, f64) {
+    let mut worst = (0, 0.0);
+    for cell in (0..body.mesh.cell_count()).filter(|&cell| !body.state.removed[cell]) {
+        let corners = body.mesh.cell(cell);
+        for (i, &a) in corners.iter().enumerate() {
+            for &b in &corners[..i] {
+                let (a, b) = (a as usize, b as usize);
+                let length = (body.state.positions[a] - body.state.positions[b]).norm().to_f64();
+                let ratio = length / (body.rest[a] - body.rest[b]).norm().to_f64();
+                if ratio > worst.1 {
+                    worst = (cell, ratio);
                 }
             }
         }
-        worst
     }
+    worst
 }

@@ -3,6 +3,8 @@
 //! `law_*` and `model_*` run over the registries by themselves: a new law or model is tested with no further line.
 //! `reference_*` compare with the cases in `tests/data/references`.
 
+mod corotational;
+mod corotational_motion;
 mod law_derivatives;
 mod law_lanes;
 mod law_rest;
@@ -16,8 +18,11 @@ mod model_invariance;
 mod model_refusal;
 mod model_removal;
 mod reference_compressible;
+mod reference_corotational_beam;
 mod reference_patch;
 mod reference_single_elements;
 mod reference_volume_penalty;
+mod rotation;
+mod stiffness_warping;
 mod support;
 mod topology;

@@ -27,9 +27,9 @@ struct Trio {
 
 fn trio(mesh: &VolumeMesh, (tissue, linear): (Tissue, Tissue)) -> Trio {
     Trio {
-        adaptive: TensorMass::new(tissue.clone()).adaptive(THRESHOLD).build(mesh).unwrap(),
-        linear: LinearTensorMass::new(linear).build(mesh).unwrap(),
-        full: TensorMass::new(tissue).build(mesh).unwrap(),
+        adaptive: TensorMass::new(tissue.clone()).adaptive(THRESHOLD).build_double(mesh).unwrap(),
+        linear: LinearTensorMass::new(linear).build_double(mesh).unwrap(),
+        full: TensorMass::new(tissue).build_double(mesh).unwrap(),
     }
 }
 

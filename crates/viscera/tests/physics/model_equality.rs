@@ -5,15 +5,15 @@ use viscera::math::{Mat3, Vec3};
 use viscera::mesh::{CubeCut, TetMesh, VolumeMesh};
 
 use crate::support::{
-    Evaluate, Matrix, Random, Vector, amplification, assert_close, assert_near, deformed, hex_mesh, models, plain,
-    tet_mesh, uneven,
+    Evaluate, Matrix, Random, Vector, amplification, assert_close, assert_near, deformed, hex_mesh, models,
+    models_of_the_law, plain, tet_mesh, uneven,
 };
 
 /// The 3×3×3 rule is another quadrature, not another text of this one.
 fn same_mathematics(tissue: &Tissue, mesh: &VolumeMesh, x: &[Vector], dx: &[Vector]) {
     let reference = plain::<f64>(tissue, mesh);
     let (forces, product, energy) = (reference.forces(x), reference.product(x, dx), reference.energy(x));
-    for named in models::<f64>(tissue, mesh).into_iter().filter(|named| !named.name.ends_with("points")) {
+    for named in models_of_the_law::<f64>(tissue, mesh).into_iter().filter(|named| !named.name.ends_with("points")) {
         assert_near(&named.model.forces(x), &forces, 1e-10, &named.name);
         assert_near(&named.model.product(x, dx), &product, 1e-10, &named.name);
         // terms of the fourth degree nearly cancel where the body turns, and leave the square of a small strain

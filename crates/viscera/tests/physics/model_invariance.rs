@@ -2,9 +2,9 @@
 //! and the precision, up to its own rounding.
 
 use viscera::material::{LawFamily, LawVisitor, Tissue};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::{Mesh, TetMesh, VolumeMesh};
-use viscera::model::{ForceModel, VolumePenalty};
+use viscera::model::Precision;
 
 use crate::support::{
     Evaluate, KEEP_VOLUME, Named, Random, Vector, amplification, assert_close, assert_near, deformed, examples,
@@ -21,14 +21,14 @@ fn moving_and_turning_the_body_moves_and_turns_its_forces() {
         let mut random = Random::new(61);
         let x = deformed(&mesh, random.deformation(0.4), Vector::ZERO, 0.005, &mut random);
         let (turn, shift) = (random.rotation(), random.vector());
-        for (named, objective) in models_and_penalty::<f64>(&mesh) {
+        for named in models_and_penalty::<f64>(&mesh) {
             let (forces, energy) = (named.model.forces(&x), named.model.energy(&x));
             let shifted: Vec<_> = x.iter().map(|&x| x + shift).collect();
             let lost = amplification(&named.name, &mesh, &shifted);
             let (tolerance, fourth_degree) = (1e-12_f64.max(1e-14 * lost), 1e-14 * lost.powf(4.0 / 3.0));
             assert_near(&named.model.forces(&shifted), &forces, tolerance, &named.name);
             assert_close(named.model.energy(&shifted), energy, tolerance.max(fourth_degree), &named.name);
-            if objective {
+            if named.claims.objective {
                 let turned: Vec<_> = x.iter().map(|&x| turn * x + shift).collect();
                 let lost = amplification(&named.name, &mesh, &turned);
                 let (tolerance, fourth_degree) = (1e-12_f64.max(1e-14 * lost), 1e-14 * lost.powf(4.0 / 3.0));
@@ -74,7 +74,7 @@ fn numbering_nodes_cells_and_corners_otherwise_changes_no_force() {
         };
         let y = permuted(&x);
         let dx = random.vectors(x.len(), 1.0);
-        for ((named, _), (again, _)) in models_and_penalty::<f64>(&mesh).into_iter().zip(models_and_penalty(&other)) {
+        for (named, again) in models_and_penalty::<f64>(&mesh).into_iter().zip(models_and_penalty(&other)) {
             let (forces, product) = (named.model.forces(&x), named.model.product(&x, &dx));
             assert_near(&again.model.forces(&y), &permuted(&forces), 1e-13, &named.name);
             assert_near(&again.model.product(&y, &permuted(&dx)), &permuted(&product), 1e-13, &named.name);
@@ -102,7 +102,7 @@ fn in_millimetres(tissue: &Tissue) -> Tissue {
 }
 
 /// Forces in newtons are the same, energies are a thousand times as many N mm, in both precisions.
-fn millimetres_instead_of_metres<T: Scalar>() {
+fn millimetres_instead_of_metres<T: Precision>() {
     let roundings = T::EPSILON.to_f64() / f64::EPSILON;
     let thousand = T::from_f64(1e3);
     for mut mesh in meshes() {
@@ -111,10 +111,7 @@ fn millimetres_instead_of_metres<T: Scalar>() {
         let x: Vec<Vec3<T>> = x.iter().map(|x| x.cast()).collect();
         let metres: Vec<_> = examples().iter().flat_map(|(tissue, _)| models::<T>(tissue, &mesh)).collect();
         let penalty = |mesh: &VolumeMesh, kappa: f64| match mesh {
-            VolumeMesh::Tet(mesh) => {
-                let model = Box::new(VolumePenalty::<T>::new(mesh, kappa).unwrap());
-                vec![Named { name: "volume penalty".into(), model: model as Box<dyn ForceModel<T>> }]
-            }
+            VolumeMesh::Tet(mesh) => vec![Named::<T>::penalty(mesh, kappa)],
             VolumeMesh::Hex(_) => vec![],
         };
         let penalty_in_metres = penalty(&mesh, KEEP_VOLUME);
@@ -154,9 +151,7 @@ fn single_precision_agrees_with_double() {
         let x: Vec<Vector> = single.iter().map(|x| x.cast()).collect();
         let dx: Vec<Vec3<f32>> = random.vectors(x.len(), 1.0).iter().map(|dx| dx.cast()).collect();
         let exact_dx: Vec<Vector> = dx.iter().map(|dx| dx.cast()).collect();
-        for ((play, _), (exact, _)) in
-            models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh))
-        {
+        for (play, exact) in models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh)) {
             let tolerance = 100.0 * f64::from(f32::EPSILON);
             assert_near(&play.model.forces(&single), &exact.model.forces(&x), tolerance, &play.name);
             let product = exact.model.product(&x, &exact_dx);
@@ -171,9 +166,7 @@ fn single_precision_agrees_with_double() {
 fn rest_in_single_precision_trembles_no_more_than_its_coordinates() {
     for mesh in meshes() {
         let x: Vec<Vec3<f32>> = mesh.nodes().iter().map(|x| x.cast()).collect();
-        for ((play, _), (exact, _)) in
-            models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh))
-        {
+        for (play, exact) in models_and_penalty::<f32>(&mesh).into_iter().zip(models_and_penalty::<f64>(&mesh)) {
             let everywhere = Random::new(65).vectors(x.len(), 1.0);
             let stiffness = largest(&exact.model.product(mesh.nodes(), &everywhere));
             let bound = 8.0 * f64::from(f32::EPSILON) * mesh.size() * stiffness.max(KEEP_VOLUME * mesh.size());

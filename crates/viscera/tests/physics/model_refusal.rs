@@ -7,7 +7,7 @@ use viscera::model::{ModelKind, ModelRecipe, TensorMass, VolumePenalty};
 use crate::support::{Random, Vector, examples, hex_mesh, tet_mesh, uneven};
 
 fn refusal(kind: ModelKind, tissue: &Tissue, mesh: &VolumeMesh) -> Option<String> {
-    kind.recipe::<f64>(tissue.clone()).build(mesh).err().map(|error| error.to_string())
+    kind.recipe(tissue.clone()).build_double(mesh).err().map(|error| error.to_string())
 }
 
 /// The list of laws and cells that a model publishes is what it accepts.
@@ -117,7 +117,7 @@ fn settings_out_of_range_are_refused() {
     let mesh = tet_mesh([1, 1, 1]);
     for threshold in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let recipe = TensorMass::new(stvk()).adaptive(threshold);
-        let error = ModelRecipe::<f64>::build(&recipe, &mesh.clone().into()).err().unwrap();
+        let error = recipe.build_double(&mesh.clone().into()).err().unwrap();
         assert_eq!(error.to_string(), format!("adaptive = {threshold} is out of range: it must be positive [m]"));
     }
     for kappa in [-1.0, f64::NAN, f64::INFINITY] {

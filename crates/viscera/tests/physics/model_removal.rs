@@ -2,7 +2,6 @@
 
 use viscera::material::LawKind;
 use viscera::mesh::{HexMesh, Mesh, TetMesh, VolumeMesh};
-use viscera::model::{ForceModel, VolumePenalty};
 
 use crate::support::{
     Evaluate, KEEP_VOLUME, Named, Random, Vector, deformed, hex_mesh, largest, models, near, tet_mesh, uneven,
@@ -88,8 +87,7 @@ fn of_every_law(mesh: &VolumeMesh, left: &[bool]) -> Vec<Named<f64>> {
         all.extend(models(&crate::support::of_values(kind, kept), mesh));
     }
     if let VolumeMesh::Tet(mesh) = mesh {
-        let model: Box<dyn ForceModel<f64>> = Box::new(VolumePenalty::new(mesh, KEEP_VOLUME).unwrap());
-        all.push(Named { name: "volume penalty".into(), model });
+        all.push(Named::penalty(mesh, KEEP_VOLUME));
     }
     all
 }

@@ -4,7 +4,8 @@ use viscera::material::{LawFamily, LawVisitor};
 use viscera::math::Sym3;
 
 use crate::support::{
-    Evaluate, Matrix, Reference, assert_close, assert_near, inner_nodes, matrix, models, number, vector, vectors,
+    Evaluate, Matrix, Reference, assert_close, assert_near, inner_nodes, matrix, models_of_the_law, number, vector,
+    vectors,
 };
 
 const CASES: [&str; 6] = [
@@ -67,7 +68,7 @@ fn models_hold_the_patch_with_the_forces_of_the_reference() {
 
         let expected = vectors(&data["nodal_internal_force_N"]);
         let tissue = reference.tissue(reference.data["material"]["model"].as_str().unwrap());
-        for named in models::<f64>(&tissue, &mesh) {
+        for named in models_of_the_law::<f64>(&tissue, &mesh) {
             let what = format!("{case}: {}", named.name);
             let forces = named.model.forces(&x);
             assert_near(&forces, &expected, tolerance, &what);

@@ -10,7 +10,7 @@ use viscera::solver::ConjugateGradient;
 
 use crate::reference::{Vector, assert_displaced, bottom, displacements, mesh, settle, world};
 
-fn beam(law: impl LawFamily) -> Body<f64> {
+fn beam(law: impl LawFamily) -> Body {
     Body::new(mesh("beam_s_tet4.msh"), 1000.0).model(TotalLagrangian::new(Tissue::uniform(law))).fix(bottom())
 }
 
@@ -47,7 +47,7 @@ fn small_loads_bend_the_beam_alike_under_every_law() {
     let report = settle(&mut yardstick, id).unwrap();
     assert_eq!((report.steps.len(), report.iterations()), (1, 1));
     let expected = displacements(&yardstick, id);
-    let compare = |body: Body<f64>, what: &str| {
+    let compare = |body: Body, what: &str| {
         let (mut world, id) = world(body, gravity);
         settle(&mut world, id).unwrap();
         assert_displaced(&displacements(&world, id), &expected, 2e-3, what);

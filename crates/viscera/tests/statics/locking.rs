@@ -49,7 +49,7 @@ fn recipes() -> [(&'static str, TotalLagrangian); 3] {
 }
 
 fn build(recipe: TotalLagrangian, mesh: &VolumeMesh) -> Box<dyn ForceModel<f64>> {
-    recipe.build(mesh).unwrap()
+    recipe.build_double(mesh).unwrap()
 }
 
 fn block() -> VolumeMesh {
@@ -128,7 +128,7 @@ fn removal_equals_never_having_been_there() {
 fn laws_and_cells_without_nodal_pressures_are_refused() {
     let stvk = Tissue::uniform(StVenantKirchhoff::new(NEARLY_INCOMPRESSIBLE));
     let refusal = |recipe: TotalLagrangian, mesh: &VolumeMesh| {
-        ModelRecipe::<f64>::build(&recipe.nodal_pressure(), mesh).err().unwrap().to_string()
+        recipe.nodal_pressure().build_double(mesh).err().unwrap().to_string()
     };
     assert_eq!(
         refusal(TotalLagrangian::new(stvk), &block()),

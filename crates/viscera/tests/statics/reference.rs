@@ -65,7 +65,7 @@ pub(crate) fn force(nodes: Vec<u32>, total: Vector) -> Load {
 }
 
 /// A world with one body.
-pub(crate) fn world(body: Body<f64>, gravity: [f64; 3]) -> (World<f64>, BodyId) {
+pub(crate) fn world(body: Body, gravity: [f64; 3]) -> (World<f64>, BodyId) {
     let mut world = World::new(WorldConfig { gravity, ..WorldConfig::default() }).unwrap();
     let id = world.add(body).unwrap();
     (world, id)

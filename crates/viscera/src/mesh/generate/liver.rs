@@ -1,5 +1,6 @@
 use super::super::{Point, SignedDistance, TetMesh, TetTopology};
 use super::GenerateError;
+use crate::mesh::thickening;
 
 /// A liver-like organ: a thick right lobe and a thin left one, a fissure between them, a hollowed underside.
 ///
@@ -89,7 +90,7 @@ fn smooth_cut(a: f64, b: f64, width: f64) -> f64 {
 
 impl TetMesh {
     /// A liver-like organ of the given `length` [m] in tetrahedra of about `edge` [m] ([`Liver`], by
-    /// [isosurface stuffing](Self::from_signed_distance)).
+    /// [isosurface stuffing](Self::from_signed_distance), with its thinnest cells thickened).
     ///
     /// Regions: the cells "right-lobe" and "left-lobe" on both sides of the fissure; the boundary faces "back" (what
     /// faces backwards on the right lobe, where a liver hangs from the diaphragm), "underside", and "left-lobe-edge" (the
@@ -98,7 +99,9 @@ impl TetMesh {
     /// # Errors
     /// Those of [`Liver::new`] and [`TetMesh::from_signed_distance`].
     pub fn liver(length: f64, edge: f64) -> Result<Self, GenerateError> {
-        let mut mesh = Self::from_signed_distance(&Liver::new(length)?, edge)?;
+        let solid = Liver::new(length)?;
+        let mut mesh = Self::from_signed_distance(&solid, edge)?;
+        thickening::thicken(&mut mesh, &solid, edge);
         for cell in 0..mesh.cells.len() {
             let centre = mesh.corners(cell).into_iter().fold(Point::ZERO, |sum, corner| sum + corner) * 0.25;
             let name = if centre.x < 0.06 * length { "right-lobe" } else { "left-lobe" };

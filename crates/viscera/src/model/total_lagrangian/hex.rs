@@ -15,7 +15,7 @@ use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 
 /// Numbers stored for a Gauss point: eight gradients and a volume.
-const POINT: usize = 25;
+pub(in crate::model) const POINT: usize = 25;
 
 /// Hexahedra in batches of lanes, of the law `L`.
 #[derive(Debug)]
@@ -105,7 +105,11 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
 }
 
 #[inline(always)]
-fn gather_corners<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> [Vec3<T::Lanes<S>>; 8] {
+pub(in crate::model) fn gather_corners<T: Scalar, S: Simd>(
+    simd: S,
+    x: &[[T; 4]],
+    nodes: &[u32],
+) -> [Vec3<T::Lanes<S>>; 8] {
     let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
     for corner in 0..8 {
         corners[corner] = gather_corner(simd, x, nodes, corner);
@@ -114,7 +118,7 @@ fn gather_corners<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> [
 }
 
 #[inline(always)]
-fn load_gradients<T: Scalar, S: Simd>(simd: S, point: &[T]) -> [Vec3<T::Lanes<S>>; 8] {
+pub(in crate::model) fn load_gradients<T: Scalar, S: Simd>(simd: S, point: &[T]) -> [Vec3<T::Lanes<S>>; 8] {
     let mut gradients = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
     for corner in 0..8 {
         for axis in 0..3 {
@@ -125,7 +129,7 @@ fn load_gradients<T: Scalar, S: Simd>(simd: S, point: &[T]) -> [Vec3<T::Lanes<S>
 }
 
 #[inline(always)]
-fn deformation<R: crate::math::Real>(corners: &[Vec3<R>; 8], gradients: &[Vec3<R>; 8]) -> Mat3<R> {
+pub(in crate::model) fn deformation<R: crate::math::Real>(corners: &[Vec3<R>; 8], gradients: &[Vec3<R>; 8]) -> Mat3<R> {
     let mut f = corners[0].outer(gradients[0]);
     for corner in 1..8 {
         f += corners[corner].outer(gradients[corner]);
@@ -148,7 +152,7 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces } = scratch;
+        let Scratch { nodal, direction, forces, .. } = scratch;
         dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
         scratch.finish(out);
     }

@@ -4,19 +4,17 @@
 //! stable neo-Hookean tetrahedra use the metric form, in which F never appears: about 200 and 125 flops an element.
 
 mod direct;
-mod hex;
+pub(super) mod hex;
 mod metric;
-mod nodal_pressure;
 mod stable_neo_hookean;
 
 use self::direct::Direct;
 use self::hex::HexLoop;
 use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
-use self::nodal_pressure::NodalPressure;
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
-use crate::material::{LawFamily, LawKind, LawVisitor, NeoHookean, StableNeoHookean, Tissue};
+use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
 
@@ -26,7 +24,6 @@ pub struct TotalLagrangian {
     tissue: Tissue,
     rule: GaussRule,
     plain: bool,
-    nodal_pressure: bool,
 }
 
 impl TotalLagrangian {
@@ -39,7 +36,7 @@ impl TotalLagrangian {
 
     /// A model of `tissue`.
     pub fn new(tissue: Tissue) -> Self {
-        Self { tissue, rule: GaussRule::Two, plain: false, nodal_pressure: false }
+        Self { tissue, rule: GaussRule::Two, plain: false }
     }
 
     /// Integrates hexahedra with another rule than 2×2×2 points. Tetrahedra need one point in any case.
@@ -51,55 +48,9 @@ impl TotalLagrangian {
     pub fn plain(self) -> Self {
         Self { plain: true, ..self }
     }
-
-    /// Averages volumes at the nodes, so that tetrahedra of nearly incompressible tissue do not lock. For `neo-hookean` and
-    /// `stable-neo-hookean` tissue on tetrahedra, with ν above ⅓: below, there is nothing to average.
-    pub fn nodal_pressure(self) -> Self {
-        Self { nodal_pressure: true, ..self }
-    }
-
-    /// The tissue of the cells, with the λ that is left to them: all of it, or 2μ at most beside nodal pressures.
-    fn cell_values(&self, cell: usize) -> Vec<f64> {
-        let mut values = self.tissue.values(cell).to_vec();
-        values[0] -= self.nodal_modulus(cell);
-        values
-    }
-
-    /// λ − λ_s [Pa]; zero without nodal pressures.
-    fn nodal_modulus(&self, cell: usize) -> f64 {
-        let rest = self.tissue.at_rest(cell).lame;
-        if self.nodal_pressure { (rest.lambda - nodal_pressure::KEPT * rest.mu).max(0.0) } else { 0.0 }
-    }
-
-    /// The model of these cells, and of nodal pressures if they are asked for.
-    fn of_tets<T: Scalar, K: TetKernel>(
-        &self,
-        mesh: &TetMesh,
-        constants: impl Fn(&super::tet_loop::RestTet) -> Vec<f64>,
-    ) -> Result<Box<dyn ForceModel<T>>, ModelError> {
-        let model = tets::<T, K>(mesh, constants)?;
-        Ok(if self.nodal_pressure {
-            Box::new(NodalPressure::new(model.tets, mesh, |cell| self.nodal_modulus(cell)))
-        } else {
-            model.boxed()
-        })
-    }
-
-    /// Nodal pressures want a law whose energy has λ/2 (J − 1)², and tetrahedra.
-    fn check_nodal_pressure(&self, mesh: &VolumeMesh) -> Result<(), ModelError> {
-        let law = self.tissue.kind();
-        if self.nodal_pressure && !matches!(law, LawKind::NeoHookean | LawKind::StableNeoHookean) {
-            let advice = "nodal pressures need a law of det F; take `neo-hookean` or `stable-neo-hookean`";
-            return Err(ModelError::UnsupportedLaw { model: ModelKind::TotalLagrangian, law, advice });
-        }
-        match mesh {
-            VolumeMesh::Hex(_) if self.nodal_pressure => Err(ModelError::NodalPressureOnHexahedra),
-            _ => Ok(()),
-        }
-    }
 }
 
-impl<T: Scalar> ModelRecipe<T> for TotalLagrangian {
+impl ModelRecipe for TotalLagrangian {
     fn kind(&self) -> ModelKind {
         ModelKind::TotalLagrangian
     }
@@ -108,9 +59,18 @@ impl<T: Scalar> ModelRecipe<T> for TotalLagrangian {
         &self.tissue
     }
 
-    fn build(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl TotalLagrangian {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
-        self.check_nodal_pressure(mesh)?;
         let law = self.tissue.kind();
         match mesh {
             VolumeMesh::Tet(mesh) if !self.plain && law == LawKind::StVenantKirchhoff => {
@@ -121,18 +81,10 @@ impl<T: Scalar> ModelRecipe<T> for TotalLagrangian {
                 tets(mesh, |rest| TransverseMetric::constants(rest, &self.tissue.at_rest(rest.cell)))
                     .map(|model: TetModel<T, TransverseMetric>| model.boxed())
             }
-            VolumeMesh::Tet(mesh) if !self.plain && law == LawKind::StableNeoHookean => self
-                .of_tets::<T, StableNeoHookeanMetric>(mesh, |rest| {
-                    StableNeoHookeanMetric::constants(rest, &self.cell_values(rest.cell))
-                }),
-            // one by one, not for any law: every kernel of every law is compiled for every instruction set
-            VolumeMesh::Tet(mesh) if self.nodal_pressure && law == LawKind::NeoHookean => self
-                .of_tets::<T, Direct<NeoHookean>>(mesh, |rest| {
-                    Direct::<NeoHookean>::constants(rest, &self.cell_values(rest.cell))
-                }),
-            VolumeMesh::Tet(mesh) if self.nodal_pressure => self.of_tets::<T, Direct<StableNeoHookean>>(mesh, |rest| {
-                Direct::<StableNeoHookean>::constants(rest, &self.cell_values(rest.cell))
-            }),
+            VolumeMesh::Tet(mesh) if !self.plain && law == LawKind::StableNeoHookean => {
+                tets(mesh, |rest| StableNeoHookeanMetric::constants(rest, self.tissue.values(rest.cell)))
+                    .map(|model: TetModel<T, StableNeoHookeanMetric>| model.boxed())
+            }
             _ => law.visit(Build { recipe: self, mesh, scalar: std::marker::PhantomData }),
         }
     }

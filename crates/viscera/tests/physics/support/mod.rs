@@ -8,7 +8,7 @@ mod reference;
 pub(crate) use compare::{assert_close, assert_near, largest, near};
 pub(crate) use models::{
     Evaluate, KEEP_VOLUME, Named, amplification, deformed, examples, hex_mesh, inner_nodes, models, models_and_penalty,
-    of_values, plain, tet_mesh, uneven,
+    models_of_the_law, of_values, plain, tet_mesh, uneven,
 };
 pub(crate) use random::Random;
 pub(crate) use reference::{Reference, matrix, number, vector, vectors};

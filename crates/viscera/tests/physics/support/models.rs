@@ -1,10 +1,10 @@
 //! Every model of every law, on meshes without any regularity.
 
 use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue};
-use viscera::math::{Scalar, Vec3};
+use viscera::math::Vec3;
 use viscera::mesh::GaussRule;
 use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
-use viscera::model::{ForceModel, ModelKind, ModelRecipe, Scratch, TotalLagrangian, VolumePenalty};
+use viscera::model::{Claims, ForceModel, ModelKind, Precision, Scratch, TotalLagrangian};
 
 use super::{Matrix, Random, Vector};
 
@@ -12,6 +12,16 @@ use super::{Matrix, Random, Vector};
 pub(crate) struct Named<T> {
     pub(crate) name: String,
     pub(crate) model: Box<dyn ForceModel<T>>,
+    pub(crate) claims: Claims,
+}
+
+impl<T: Precision> Named<T> {
+    /// The volume penalty, which is objective and has an energy.
+    pub(crate) fn penalty(mesh: &TetMesh, kappa: f64) -> Self {
+        let model = T::build_volume_penalty(mesh, kappa).unwrap();
+        let claims = Claims { of_the_law: false, ..Claims::of_law(LawKind::StVenantKirchhoff) };
+        Self { name: "volume penalty".into(), model, claims }
+    }
 }
 
 /// Stiffness of the volume penalty in the suites [Pa]: that of ordinary tissue.
@@ -23,7 +33,7 @@ pub(crate) trait Evaluate<T> {
     fn product(&self, x: &[Vec3<T>], dx: &[Vec3<T>]) -> Vec<Vec3<T>>;
 }
 
-impl<T: Scalar> Evaluate<T> for dyn ForceModel<T> + '_ {
+impl<T: Precision> Evaluate<T> for dyn ForceModel<T> + '_ {
     fn forces(&self, x: &[Vec3<T>]) -> Vec<Vec3<T>> {
         let mut out = vec![Vec3::ZERO; x.len()];
         self.add_forces(x, &mut Scratch::new(x.len()), &mut out);
@@ -38,12 +48,12 @@ impl<T: Scalar> Evaluate<T> for dyn ForceModel<T> + '_ {
 }
 
 /// The total-Lagrangian model that computes F and P(F) in so many words.
-pub(crate) fn plain<T: Scalar>(tissue: &Tissue, mesh: &VolumeMesh) -> Box<dyn ForceModel<T>> {
-    TotalLagrangian::new(tissue.clone()).plain().build(mesh).unwrap()
+pub(crate) fn plain<T: Precision>(tissue: &Tissue, mesh: &VolumeMesh) -> Box<dyn ForceModel<T>> {
+    T::build_model(&TotalLagrangian::new(tissue.clone()).plain(), mesh).unwrap()
 }
 
 /// Every model that can compute this tissue on this mesh, and the plain one.
-pub(crate) fn models<T: Scalar>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Named<T>> {
+pub(crate) fn models<T: Precision>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Named<T>> {
     let hexahedra = matches!(mesh, VolumeMesh::Hex(_));
     let law = tissue.kind();
     let able = |kind: &ModelKind| kind.info().laws.contains(&law) && (kind.info().hexahedra || !hexahedra);
@@ -51,25 +61,31 @@ pub(crate) fn models<T: Scalar>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Named
         .iter()
         .copied()
         .filter(able)
-        .map(|kind| Named { name: format!("{kind} of {law}"), model: kind.recipe(tissue.clone()).build(mesh).unwrap() })
+        .map(|kind| Named {
+            name: format!("{kind} of {law}"),
+            model: T::build_model(kind.recipe(tissue.clone()).as_ref(), mesh).unwrap(),
+            claims: kind.claims(law, hexahedra),
+        })
         .collect();
-    models.push(Named { name: format!("plain total-lagrangian of {law}"), model: plain(tissue, mesh) });
+    let claims = Claims::of_law(law);
+    models.push(Named { name: format!("plain total-lagrangian of {law}"), model: plain(tissue, mesh), claims });
     if hexahedra {
-        let model = TotalLagrangian::new(tissue.clone()).gauss(GaussRule::Three).build(mesh).unwrap();
-        models.push(Named { name: format!("total-lagrangian of {law}, 3×3×3 points"), model });
+        let model = T::build_model(&TotalLagrangian::new(tissue.clone()).gauss(GaussRule::Three), mesh).unwrap();
+        models.push(Named { name: format!("total-lagrangian of {law}, 3×3×3 points"), model, claims });
     }
     models
 }
 
-/// Every model of every law, uniform, and the volume penalty, with whether they are objective.
-pub(crate) fn models_and_penalty<T: Scalar>(mesh: &VolumeMesh) -> Vec<(Named<T>, bool)> {
-    let mut all: Vec<_> = examples()
-        .into_iter()
-        .flat_map(|(tissue, objective)| models(&tissue, mesh).into_iter().map(move |model| (model, objective)))
-        .collect();
+/// The models that are another text of this tissue's law.
+pub(crate) fn models_of_the_law<T: Precision>(tissue: &Tissue, mesh: &VolumeMesh) -> Vec<Named<T>> {
+    models(tissue, mesh).into_iter().filter(|named| named.claims.of_the_law).collect()
+}
+
+/// Every model of every law, uniform, and the volume penalty.
+pub(crate) fn models_and_penalty<T: Precision>(mesh: &VolumeMesh) -> Vec<Named<T>> {
+    let mut all: Vec<_> = examples().iter().flat_map(|(tissue, _)| models(tissue, mesh)).collect();
     if let VolumeMesh::Tet(mesh) = mesh {
-        let model = Box::new(VolumePenalty::<T>::new(mesh, KEEP_VOLUME).unwrap());
-        all.push((Named { name: "volume penalty".into(), model }, true));
+        all.push(Named::penalty(mesh, KEEP_VOLUME));
     }
     all
 }

@@ -1,0 +1,194 @@
+//! `cargo bench -p viscera-benches`: forces, steps and cuts per tetrahedron, in both precisions, at three sizes.
+//!
+//! `-- --quick` takes a quick look, `-- forces/tensor-mass` some of them. At the end stands one line for each, with the
+//! share of the machine's own peak.
+
+use std::cell::RefCell;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, SamplingMode};
+use viscera::body::Body;
+use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
+use viscera::math::Vec3;
+use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
+use viscera::model::{
+    ForceModel, LinearTensorMass, ModelRecipe, Precision, Scratch, TensorMass, TotalLagrangian, VolumePenalty,
+};
+use viscera::world::{World, WorldConfig};
+use viscera_benches::{Machine, instruction_set};
+
+/// Cells of the beam of 0.1×0.1×0.4 m along its axes: 1536, 12 288 and 98 304 tetrahedra.
+const SIZES: [[usize; 3]; 3] = [[4, 4, 16], [8, 8, 32], [16, 16, 64]];
+const BEAM: [f64; 3] = [0.1, 0.1, 0.4]; // m
+
+/// What a measurement is to be compared with.
+#[derive(Clone, Copy)]
+enum Yardstick {
+    /// Operations of one element against the peak of multiply-adds.
+    Flops(f64),
+    /// Bytes that one evaluation reads against the bandwidth.
+    Bytes(f64),
+    /// Nothing.
+    None,
+}
+
+struct Suite<'a> {
+    machine: Machine,
+    group: RefCell<BenchmarkGroup<'a, WallTime>>,
+    lines: RefCell<Vec<String>>,
+}
+
+impl Suite<'_> {
+    /// Measures `round`, which handles `elements` elements and gives the time that counts.
+    fn measure<T: Precision>(
+        &self,
+        name: &str,
+        elements: usize,
+        yardstick: Yardstick,
+        mut round: impl FnMut() -> Duration,
+    ) {
+        let id = format!("{name}/{}/{elements}", T::NAME);
+        let mut best = Duration::MAX;
+        self.group.borrow_mut().bench_function(&id, |bencher| {
+            bencher.iter_custom(|rounds| {
+                let total = (0..rounds).map(|_| round()).sum::<Duration>();
+                best = best.min(total / rounds as u32);
+                total
+            });
+        });
+        if best == Duration::MAX {
+            return; // not asked for
+        }
+        let seconds = best.as_secs_f64();
+        let share = match yardstick {
+            Yardstick::Flops(each) => {
+                let flops = each * elements as f64 / seconds;
+                let share = 100.0 * flops / self.machine.flops::<T>();
+                format!("{share:3.0} % of FMA peak ({:.1} GFLOP/s)", flops / 1e9)
+            }
+            Yardstick::Bytes(bytes) => {
+                let share = 100.0 * bytes / seconds / self.machine.bandwidth;
+                format!("{share:3.0} % of bandwidth ({:.1} GB/s)", bytes / seconds / 1e9)
+            }
+            Yardstick::None => String::new(),
+        };
+        let each = seconds * 1e9 / elements as f64;
+        let line = format!("{id:<58} {each:8.2} ns/element   {share:<38} 1 thread   {}", instruction_set());
+        self.lines.borrow_mut().push(line);
+    }
+
+    fn forces<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh, flops: Option<f64>) {
+        let x = stretched::<T>(mesh);
+        let (mut scratch, mut out) = (Scratch::new(x.len()), vec![Vec3::ZERO; x.len()]);
+        let yardstick = flops.map_or(Yardstick::Bytes(model.bytes() as f64), Yardstick::Flops);
+        self.measure::<T>(&format!("forces/{name}"), mesh.cell_count(), yardstick, || {
+            let begin = Instant::now();
+            model.add_forces(black_box(&x), &mut scratch, black_box(&mut out));
+            begin.elapsed()
+        });
+    }
+
+    /// One sub-step of a beam that swings under gravity, all that belongs to it: forces, loads, motion, guard.
+    fn substep<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>) {
+        let mut world = World::<T>::new(WorldConfig { step: 2e-3, ..WorldConfig::default() }).unwrap();
+        let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
+        world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
+        let snapshot = world.snapshot();
+        self.measure::<T>(&format!("substep/{name}"), mesh.cell_count(), Yardstick::None, || {
+            let begin = Instant::now();
+            let substeps = world.step().unwrap().substeps;
+            let elapsed = begin.elapsed();
+            if world.time() > 0.05 {
+                world.restore(&snapshot).unwrap();
+            }
+            elapsed / substeps
+        });
+    }
+
+    /// Removes every 97th tetrahedron; the time per removed one.
+    fn removal<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh) {
+        let cells: Vec<u32> = (0..mesh.cell_count() as u32).step_by(97).collect();
+        let id = format!("removal/{name}/of-{}", mesh.cell_count());
+        self.measure::<T>(&id, cells.len(), Yardstick::None, || {
+            let mut model = model.clone_box();
+            let begin = Instant::now();
+            model.remove(black_box(&cells));
+            begin.elapsed()
+        });
+    }
+}
+
+/// A smooth deformation in which every term of every law counts.
+fn stretched<T: Precision>(mesh: &VolumeMesh) -> Vec<Vec3<T>> {
+    let bend = |x: &Vec3<f64>| Vec3::new(x.x + 0.2 * x.z * x.z, 0.98 * x.y, 1.05 * x.z).cast();
+    mesh.nodes().iter().map(bend).collect()
+}
+
+fn suite<T: Precision>(suite: &Suite<'_>) {
+    let lame = Lame::from_young_poisson(5e3, 0.4).unwrap();
+    let longitudinal = Lame::from_young_poisson(12e3, 0.4).unwrap();
+    let linear = || Tissue::uniform(LinearElastic::new(lame));
+    let stvk = || Tissue::uniform(StVenantKirchhoff::new(lame));
+    let fibred = || Tissue::uniform(TransverseStVenantKirchhoff::new(lame, [0.0, 0.0, 1.0], longitudinal).unwrap());
+
+    for cells in SIZES {
+        let tetrahedra = TetMesh::box_grid(cells, BEAM);
+        let mesh = VolumeMesh::from(tetrahedra.clone());
+        // Half of the nodes of the deformed beam lie farther from their rest than this.
+        let mut moved: Vec<f64> =
+            stretched::<f64>(&mesh).iter().zip(mesh.nodes()).map(|(x, rest)| (*x - *rest).norm()).collect();
+        moved.sort_by(f64::total_cmp);
+        let threshold = moved[moved.len() / 2];
+
+        let models: [(&str, Box<dyn ModelRecipe>, Option<f64>); 5] = [
+            ("linear-tensor-mass", Box::new(LinearTensorMass::new(linear())), None),
+            ("tensor-mass", Box::new(TensorMass::new(stvk())), None),
+            ("tensor-mass-half-linear", Box::new(TensorMass::new(stvk()).adaptive(threshold)), None),
+            // Multiplications and additions of the metric form, counted in its formulae.
+            ("total-lagrangian/st-venant-kirchhoff", Box::new(TotalLagrangian::new(stvk())), Some(200.0)),
+            ("total-lagrangian/transverse", Box::new(TotalLagrangian::new(fibred())), None),
+        ];
+        for (name, recipe, flops) in models {
+            let model = T::build_model(recipe.as_ref(), &mesh).unwrap();
+            suite.forces(name, model.as_ref(), &mesh, flops);
+            suite.removal(name, model.as_ref(), &mesh);
+            suite.substep::<T>(name, &mesh, recipe);
+        }
+        let penalty = VolumePenalty::<T>::new(&tetrahedra, 1e4).unwrap();
+        suite.forces("volume-penalty", &penalty, &mesh, None);
+        suite.removal("volume-penalty", &penalty, &mesh);
+
+        let hexahedra = VolumeMesh::from(HexMesh::box_grid(cells, BEAM));
+        let model = T::build_model(&TotalLagrangian::new(stvk()), &hexahedra).unwrap();
+        suite.forces::<T>("total-lagrangian/hexahedra", model.as_ref(), &hexahedra, None);
+    }
+}
+
+fn main() {
+    let machine = Machine::measure();
+    let mut criterion = Criterion::default()
+        .without_plots()
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(700))
+        .sample_size(20)
+        .configure_from_args();
+    let mut group = criterion.benchmark_group("engine");
+    group.sampling_mode(SamplingMode::Flat);
+    let benches = Suite { machine, group: RefCell::new(group), lines: RefCell::default() };
+    suite::<f32>(&benches);
+    suite::<f64>(&benches);
+    benches.group.into_inner().finish();
+
+    println!(
+        "\nmachine, 1 thread, {}: {:.1} GFLOP/s in f32, {:.1} GFLOP/s in f64 (FMA), {:.1} GB/s read in order",
+        instruction_set(),
+        machine.flops_f32 / 1e9,
+        machine.flops_f64 / 1e9,
+        machine.bandwidth / 1e9
+    );
+    for line in benches.lines.into_inner() {
+        println!("{line}");
+    }
+}

@@ -1,0 +1,5 @@
+//! What the benches set their numbers against: the machine's own multiply-adds and bytes, measured in the same run.
+
+mod machine;
+
+pub use machine::{Machine, instruction_set};

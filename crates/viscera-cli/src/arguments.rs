@@ -1,0 +1,82 @@
+//! What can be typed behind `viscera`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::mesh::arguments::MeshCommand;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    it went well
+  1    the run or the check found a problem
+  2    wrong usage or input: a missing file, a mistake in a scene, a folder that cannot be written
+  130  interrupted by Ctrl-C; what was computed is kept
+
+Begin with `viscera scenes` and `viscera run liver-resection`.";
+
+/// Soft tissue in real time, physically: run scenes, check them, make meshes.
+#[derive(Debug, Parser)]
+#[command(name = "viscera", version, after_help = EXIT_CODES, disable_help_subcommand = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a scene: a ParaView series, observables, a summary and pictures go into a folder.
+    #[command(after_help = EXIT_CODES)]
+    Run(RunArguments),
+    /// Say what a scene holds, what it takes to run it, and what is wrong or odd with it; runs nothing.
+    #[command(after_help = EXIT_CODES)]
+    Check(SceneArguments),
+    /// Look at meshes, convert and make them.
+    #[command(after_help = EXIT_CODES)]
+    Mesh {
+        #[command(subcommand)]
+        command: MeshCommand,
+    },
+    /// List the scenes that are built in, or copy them to change them.
+    Scenes(ScenesArguments),
+    /// Print the JSON schema of scene files, for editors.
+    Schema,
+}
+
+/// Which scene, and what to change in it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// A scene file, or the name of a scene that is built in (see `viscera scenes`).
+    pub(crate) scene: String,
+    /// Change a value of the scene, such as body.liver.law.young="8 kPa"; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Run for another time, such as "0.5 s", than the scene's duration.
+    #[arg(long, value_name = "TIME")]
+    pub(crate) time: Option<String>,
+    /// Compute in another precision than the scene's.
+    #[arg(long, value_parser = ["single", "double"])]
+    pub(crate) precision: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// The folder for results; by default out/ and the name of the scene.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// How many pictures to take, evenly over the run; by default start, middle and end.
+    #[arg(long, value_name = "COUNT", default_value_t = 3)]
+    pub(crate) pictures: u64,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ScenesArguments {
+    /// Write all of them, with the files that they name and the schema, into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) copy_to: Option<PathBuf>,
+}

@@ -1,0 +1,140 @@
+//! The summary on the screen.
+
+use comfy_table::{CellAlignment, Table, presets};
+use viscera_io::grouped;
+
+use super::summary::{BodyResult, Summary};
+use crate::terminal::heading;
+use crate::units::with_prefix;
+
+/// Everything about a run, for a person.
+pub(super) fn tables(summary: &Summary) -> String {
+    let mut parts = vec![bodies(&summary.bodies)];
+    if let Some(comparison) = comparison(&summary.bodies) {
+        parts.push(format!("{}\n{comparison}", heading("volume variation")));
+    }
+    if !summary.instruments.is_empty() {
+        parts.push(instruments(summary));
+    }
+    parts.push(speed(summary));
+    let (folder, files) = &summary.files;
+    parts.push(format!("{}: {}", folder.display(), files.join(", ")));
+    parts.join("\n\n")
+}
+
+/// The text of a table, its head standing out. The head is marked last: escape codes would count as letters of a column.
+fn text(table: &Table) -> String {
+    let text = table.trim_fmt();
+    match text.split_once('\n') {
+        Some((head, rows)) => format!("{}\n{rows}", heading(head)),
+        None => text,
+    }
+}
+
+/// A table without frames, numbers to the right.
+fn table(head: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING);
+    table.set_header(head);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 2));
+    }
+    table
+}
+
+fn bodies(bodies: &[BodyResult]) -> String {
+    let cut = bodies.iter().any(|body| body.removed_cells > 0);
+    let inverted = bodies.iter().any(|body| body.inverted_cells > 0);
+    let adaptive = bodies.iter().any(|body| (1..body.nodes_left).contains(&body.nonlinear_nodes));
+    let mut head = vec!["body", "cells"];
+    head.extend(cut.then_some("removed"));
+    head.extend(inverted.then_some("inverted"));
+    head.extend(adaptive.then_some("non-linear nodes"));
+    head.extend(["volume", "variation", "displacement", "elastic", "kinetic", "at rest"]);
+    let mut table = table(&head);
+    for body in bodies {
+        let mut row = vec![body.name.clone(), grouped(body.cells - body.removed_cells)];
+        row.extend(cut.then(|| grouped(body.removed_cells)));
+        row.extend(inverted.then(|| grouped(body.inverted_cells)));
+        row.extend(adaptive.then(|| format!("{} of {}", grouped(body.nonlinear_nodes), grouped(body.nodes_left))));
+        row.extend([
+            format!("{:.1} cm³", body.volume * 1e6),
+            percent(body.volume_variation),
+            format!("{:.1} mm", body.max_displacement * 1e3),
+            with_prefix(body.elastic_energy, "J"),
+            with_prefix(body.kinetic_energy, "J"),
+            if body.at_rest { "yes" } else { "no" }.to_owned(),
+        ]);
+        table.add_row(row);
+    }
+    text(&table)
+}
+
+/// Bodies whose names are `ROW-COLUMN`, as in `linear-2F`, side by side: one row for each law, one column for each load.
+fn comparison(bodies: &[BodyResult]) -> Option<String> {
+    let (mut rows, mut columns) = (Vec::new(), Vec::new());
+    for body in bodies {
+        let (row, column) = body.name.rsplit_once('-')?;
+        if !rows.contains(&row) {
+            rows.push(row);
+        }
+        if !columns.contains(&column) {
+            columns.push(column);
+        }
+    }
+    // Only a full table is one: names with a hyphen are common.
+    if rows.len() < 2 || columns.len() < 2 || rows.len() * columns.len() != bodies.len() {
+        return None;
+    }
+    let mut table = table(&[&[""], &columns[..]].concat());
+    for row in rows {
+        let of = |column: &&str| bodies.iter().find(|body| body.name == format!("{row}-{column}"));
+        let values =
+            columns.iter().map(|column| of(column).map_or_else(String::new, |body| percent(body.volume_variation)));
+        table.add_row([row.to_owned()].into_iter().chain(values).collect::<Vec<_>>());
+    }
+    Some(text(&table))
+}
+
+fn instruments(summary: &Summary) -> String {
+    let mut table = table(&["instrument", "kind", "peak force", "at", "most nodes held"]);
+    for instrument in &summary.instruments {
+        let holds = instrument.held_nodes > 0;
+        let or_nothing = |text: String| if holds { text } else { "–".to_owned() };
+        table.add_row([
+            instrument.name.clone(),
+            instrument.kind.clone(),
+            or_nothing(with_prefix(instrument.peak_force, "N")),
+            or_nothing(format!("{:.2} s", instrument.time_of_peak_force)),
+            or_nothing(instrument.held_nodes.to_string()),
+        ]);
+    }
+    text(&table)
+}
+
+fn speed(summary: &Summary) -> String {
+    let Summary { simulated_time, computing_time, real_time_factor, steps, .. } = summary;
+    let (fewest, most) = (summary.fewest_substeps_of_a_step, summary.most_substeps_of_a_step);
+    let substeps = if fewest == most { format!("{most}") } else { format!("{fewest} to {most}") };
+    let again = match summary.retries {
+        0 => String::new(),
+        count => format!("; {count} made again with more"),
+    };
+    format!(
+        "{simulated_time:.2} s simulated in {computing_time:.2} s: {} {real_time_factor:.2}\n\
+         {steps} steps of {} in {substeps} sub-steps{again}; the stable step is {}",
+        heading("real-time factor"),
+        with_prefix(summary.step, "s"),
+        with_prefix(summary.stable_step_at_end, "s"),
+    )
+}
+
+/// A variation with its sign, three digits where it is small.
+fn percent(value: f64) -> String {
+    let percent = 100.0 * value;
+    let decimals = if percent.abs() < 1.0 { 3 } else { 2 };
+    format!("{percent:+.decimals$} %")
+}

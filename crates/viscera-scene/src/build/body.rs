@@ -1,0 +1,124 @@
+use viscera::body::{Body, BodyError, Load, LoosePieces};
+use viscera::curve::Curve;
+use viscera::material::Tissue;
+use viscera::math::Vec3;
+use viscera::mesh::{Region, VolumeMesh};
+use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, TensorMass, TotalLagrangian};
+
+use super::curve::curve;
+use super::law::{densities, tissue};
+use super::mesh::{PlacedMesh, mesh};
+use super::region::{Wanted, region};
+use super::site::Site;
+use crate::error::SceneErrors;
+use crate::file::{BodyFile, LawName, LoadFile, LoosePiecesFile, ModelFile, ModelName};
+
+/// The body, and what a person should know about its mesh.
+pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Vec<String>), SceneErrors> {
+    let placed = mesh(&file.mesh, file.place.as_ref(), site)?;
+    let tissue = tissue(file, &placed, site)?;
+    let densities = densities(file, &placed.mesh, site)?;
+    let PlacedMesh { mesh, notices, .. } = placed;
+    let recipe = recipe(file, tissue, &mesh, site)?;
+
+    let mut body = Body::new(mesh.clone(), file.density.0)
+        .name(name)
+        .boxed_model(recipe)
+        .damping(file.damping.0)
+        .keep_volume(file.model.as_ref().and_then(|model| model.keep_volume).map_or(0.0, |kappa| kappa.0))
+        .loose_pieces(match file.loose_pieces {
+            LoosePiecesFile::Free => LoosePieces::Free,
+            LoosePiecesFile::Drop => LoosePieces::Drop,
+        });
+    if let Some(densities) = densities {
+        body = body.densities(densities);
+    }
+    if let Some(fixed) = &file.fix {
+        body = body.fix(region(fixed, Wanted::Nodes, &mesh, &site.key("fix"))?);
+    }
+    for (index, prescribed) in file.prescribe.iter().enumerate() {
+        let site = site.key("prescribe").key(index);
+        let region = region(&prescribed.region, Wanted::Nodes, &mesh, &site.key("region"))?;
+        body = body.prescribe(region, curve(&prescribed.displacement, &site.key("displacement"))?);
+    }
+    for (index, load) in file.load.iter().enumerate() {
+        body = body.load(self::load(load, &mesh, &site.key("load").key(index))?);
+    }
+    Ok((body, notices))
+}
+
+/// The force model: the one that is named, or the tensor-mass model of the law, or on hexahedra the one that works there.
+fn recipe(
+    file: &BodyFile,
+    tissue: Tissue,
+    mesh: &VolumeMesh,
+    site: &Site,
+) -> Result<Box<dyn ModelRecipe>, SceneErrors> {
+    let kind = match (&file.model, mesh, file.law.kind) {
+        (Some(model), ..) => model.kind,
+        (None, VolumeMesh::Hex(_), _) => ModelName::TotalLagrangian,
+        (None, VolumeMesh::Tet(_), LawName::Linear) => ModelName::LinearTensorMass,
+        (None, VolumeMesh::Tet(_), LawName::StVenantKirchhoff) => ModelName::TensorMass,
+    };
+    let adaptive = file.model.as_ref().and_then(|model: &ModelFile| model.adaptive);
+    if adaptive.is_some() && kind != ModelName::TensorMass {
+        let message = "`adaptive` is a setting of the model `tensor-mass`";
+        return Err(site.key("model").key("adaptive").error(message, "take that model, or leave it out"));
+    }
+    Ok(match kind {
+        ModelName::LinearTensorMass => Box::new(LinearTensorMass::new(tissue)),
+        ModelName::TotalLagrangian => Box::new(TotalLagrangian::new(tissue)),
+        ModelName::TensorMass => {
+            let model = TensorMass::new(tissue);
+            Box::new(adaptive.map_or(model.clone(), |threshold| model.adaptive(threshold.0)))
+        }
+    })
+}
+
+fn load(file: &LoadFile, mesh: &VolumeMesh, site: &Site) -> Result<Load, SceneErrors> {
+    let part = |wanted| region(&file.region, wanted, mesh, &site.key("region"));
+    if let Some(force) = &file.force {
+        return Ok(Load::Force { region: part(Wanted::Nodes)?, total: curve(force, &site.key("force"))? });
+    }
+    if let Some(force) = &file.force_per_node {
+        let region = part(Wanted::Nodes)?;
+        let each = curve(force, &site.key("force-per-node"))?;
+        return Ok(Load::Force { total: times(&each, count(&region, mesh, site)?, site)?, region });
+    }
+    if let Some(pressure) = &file.pressure {
+        return Ok(Load::Pressure { region: part(Wanted::Faces)?, pressure: curve(pressure, &site.key("pressure"))? });
+    }
+    let Some(traction) = &file.traction else {
+        return Err(site.error("the load has no size", "give `force`, `force-per-node`, `pressure` or `traction`"));
+    };
+    Ok(Load::Traction { region: part(Wanted::Faces)?, traction: curve(traction, &site.key("traction"))? })
+}
+
+fn count(region: &Region, mesh: &VolumeMesh, site: &Site) -> Result<usize, SceneErrors> {
+    region.nodes(mesh).map(|nodes| nodes.len()).map_err(|error| site.key("region").error(error, ""))
+}
+
+fn times(curve: &Curve<Vec3<f64>>, count: usize, site: &Site) -> Result<Curve<Vec3<f64>>, SceneErrors> {
+    let points = curve.points().iter().map(|&(time, force)| (time, force * count as f64)).collect();
+    Curve::piecewise_linear(points).map_err(|error| site.key("force-per-node").error(error, ""))
+}
+
+/// The key of a body that an error of the engine is about.
+pub(super) fn blame(error: &BodyError, site: &Site) -> SceneErrors {
+    // The name of the body stands in the line that is shown.
+    let message = error.to_string();
+    let message = message.split_once("`: ").map_or(message.as_str(), |(_, rest)| rest);
+    let (message, help) = message.split_once("; ").or(message.split_once(": ")).unwrap_or((message, ""));
+    match error {
+        BodyError::Model { source: ModelError::Mesh(_), .. }
+        | BodyError::Mesh { .. }
+        | BodyError::IsolatedNode { .. } => site.key("mesh"),
+        BodyError::Model { source: ModelError::Material(_), .. } => site.key("law"),
+        BodyError::Model { .. } | BodyError::NoModel { .. } => site.key("model"),
+        BodyError::KeepVolumeOnHexahedra { .. } => site.key("model").key("keep-volume"),
+        BodyError::OutOfRange { name, .. } => site.key(name),
+        BodyError::WrongDensityCount { .. } => site.key("density"),
+        BodyError::Region { .. } => site.clone(),
+    }
+    .error(message, help)
+}

@@ -1,0 +1,96 @@
+//! From a checked scene to a world.
+
+mod body;
+mod csv;
+mod curve;
+mod instrument;
+mod law;
+mod mesh;
+mod region;
+mod site;
+
+use indexmap::IndexMap;
+use viscera::math::Scalar;
+use viscera::mesh::VolumeMesh;
+use viscera::model::Precision;
+use viscera::world::{BodyId, InstrumentId, Substep, World, WorldConfig, WorldError};
+
+use crate::error::SceneErrors;
+use crate::file::{InstrumentFile, SceneFile, SubstepFile};
+use crate::scene::Scene;
+use site::Site;
+
+/// A world that is ready to run, and the names that the scene gives to what is in it.
+pub struct BuiltScene<T: Scalar> {
+    /// What the file says, defaults filled in.
+    pub file: SceneFile,
+    /// The world, at time 0.
+    pub world: World<T>,
+    /// Bodies by name, in the order of the file.
+    pub bodies: IndexMap<String, BodyId>,
+    /// Instruments by name, in the order of the file.
+    pub instruments: IndexMap<String, InstrumentId>,
+    /// What was found and repaired in mesh files, by the name of the body.
+    pub notices: Vec<(String, String)>,
+}
+
+impl<T: Scalar> BuiltScene<T> {
+    /// Steps of the world that the scene's duration takes.
+    pub fn steps(&self) -> u64 {
+        // A duration of whole steps is one, though 4 s / 5 ms is not 800 in every last bit.
+        let steps = self.file.duration.0 / self.file.step.0;
+        (steps - 1e-9 * steps).ceil().max(1.0) as u64
+    }
+}
+
+impl Scene {
+    /// Builds the world: reads meshes and curves, finds regions, assembles models. `T` is the precision, `f32` or `f64`;
+    /// [`SceneFile::precision`] tells which one the scene asks for.
+    ///
+    /// # Errors
+    /// All that [`check`](Self::check) finds; and the first file that cannot be read, region that selects nothing, law
+    /// that the model does not compute, or substep that is too long.
+    pub fn build<T: Precision>(&self) -> Result<BuiltScene<T>, SceneErrors> {
+        let file = self.check()?;
+        let root = Site::root(self);
+        let config = WorldConfig {
+            gravity: file.gravity.map(|component| component.0),
+            step: file.step.0,
+            substep: match file.substep {
+                SubstepFile::Automatic(_) => Substep::Automatic,
+                SubstepFile::Fixed(time) => Substep::Fixed(time.0),
+            },
+        };
+        let mut world = World::new(config).map_err(|error| root.error(error, ""))?;
+        let mut notices = Vec::new();
+        let mut bodies = IndexMap::new();
+        for (name, described) in &file.body {
+            let site = root.key("body").key(name);
+            let (body, of_mesh) = body::body(name, described, &site)?;
+            notices.extend(of_mesh.into_iter().map(|notice| (name.clone(), notice)));
+            let id = world.add(body).map_err(|error| match &error {
+                WorldError::Body(of_body) => body::blame(of_body, &site),
+                WorldError::UnstableSubstep { substep, stable, .. } => root.key("substep").error(
+                    format!("body `{name}` blows up at substeps of {substep:.3e} s"),
+                    format!("the longest stable one is {stable:.3e} s; \"auto\" finds it by itself"),
+                ),
+                _ => site.error(&error, ""),
+            })?;
+            bodies.insert(name.clone(), id);
+        }
+        let mut instruments = IndexMap::new();
+        for (name, described) in &file.instrument {
+            let site = root.key("instrument").key(name);
+            let can_cut = |id: &BodyId| matches!(world.body(*id).mesh(), VolumeMesh::Tet(_));
+            if matches!(described, InstrumentFile::Cautery { .. })
+                && !bodies.is_empty()
+                && !bodies.values().any(can_cut)
+            {
+                let message = "a cautery burns tetrahedra away, and all bodies are made of hexahedra";
+                return Err(site.key("kind").error(message, "make the body of tetrahedra, or leave the cautery out"));
+            }
+            instruments.insert(name.clone(), instrument::add(&mut world, described, &site)?);
+        }
+        Ok(BuiltScene { file, world, bodies, instruments, notices })
+    }
+}

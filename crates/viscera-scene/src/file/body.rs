@@ -1,0 +1,135 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{CurveFile, LawFile, MeshFile, PlaceFile, RegionFile};
+use crate::quantity::{Density, Force, Length, Pressure, Rate};
+
+/// A body of tissue.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "body")]
+pub struct BodyFile {
+    /// Where its mesh comes from.
+    pub mesh: MeshFile,
+    /// Where it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<PlaceFile>,
+    /// Mass density [kg/m³]; soft tissue about 1060.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub density: Density,
+    /// How it resists deformation.
+    pub law: LawFile,
+    /// How the law becomes forces; by default the tensor-mass model that fits the law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<ModelFile>,
+    /// Damping against the surroundings [1/s]: each node is held back with rate × mass × velocity.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0))]
+    pub damping: Rate,
+    /// What does not move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fix: Option<RegionFile>,
+    /// What becomes of pieces that are cut off: "free" (the default) lets them fall, "drop" takes them away.
+    #[serde(default)]
+    pub loose_pieces: LoosePiecesFile,
+    /// Parts of another law or density; later ones win where they overlap.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub part: Vec<PartFile>,
+    /// What is moved along a given way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub prescribe: Vec<PrescribeFile>,
+    /// What pulls and pushes on it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load: Vec<LoadFile>,
+}
+
+/// How a law and a mesh become forces.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "model")]
+pub struct ModelFile {
+    /// Which model.
+    pub kind: ModelName,
+    /// Stiffness κ against changes of the volume of a cell [Pa] (INRIA RR-4028, section 4).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub keep_volume: Option<Pressure>,
+    /// Displacement [m] below which a node follows the linear law alone (INRIA RR-4028, section 6); `tensor-mass` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub adaptive: Option<Length>,
+}
+
+/// The force models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelName {
+    /// Precomputed tensors of the linear law; tetrahedra.
+    LinearTensorMass,
+    /// Precomputed tensors of the non-linear law; tetrahedra.
+    TensorMass,
+    /// Stress from the deformation of each cell; every law, tetrahedra and hexahedra.
+    TotalLagrangian,
+}
+
+/// What becomes of pieces that are cut off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LoosePiecesFile {
+    /// They move on.
+    #[default]
+    Free,
+    /// They are taken away.
+    Drop,
+}
+
+/// A part of a body with a law or density of its own.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "part")]
+pub struct PartFile {
+    /// Which cells.
+    pub region: RegionFile,
+    /// Their law, of the same kind as the body's; it may have fibres of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<LawFile>,
+    /// Their mass density [kg/m³].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub density: Option<Density>,
+}
+
+/// A region that is moved along a given way.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "prescribed motion")]
+pub struct PrescribeFile {
+    /// Which nodes.
+    pub region: RegionFile,
+    /// How far they are from their place at rest [m].
+    pub displacement: CurveFile<[Length; 3]>,
+}
+
+/// A load. Give one of `force`, `force-per-node`, `pressure`, `traction`.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(
+    title = "load",
+    extend("x-exactly-one-of" = [["force"], ["force-per-node"], ["pressure"], ["traction"]])
+)]
+pub struct LoadFile {
+    /// Where it acts.
+    pub region: RegionFile,
+    /// Total force, shared equally by the nodes of the region [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<CurveFile<[Force; 3]>>,
+    /// Force on every node of the region [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_per_node: Option<CurveFile<[Force; 3]>>,
+    /// Pressure on the surface in the region, positive inwards [Pa]; it follows the surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<CurveFile<Pressure>>,
+    /// Force per area on the surface in the region [Pa], in a direction that stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub traction: Option<CurveFile<[Pressure; 3]>>,
+}

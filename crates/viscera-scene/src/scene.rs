@@ -1,0 +1,81 @@
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use crate::check::check;
+use crate::document::Document;
+use crate::error::{SceneError, SceneErrors};
+use crate::file::SceneFile;
+use crate::schema::schema;
+
+/// A scene file and its overrides.
+///
+/// The text is kept, so that whatever turns out to be wrong later can be shown in its line.
+#[derive(Clone, PartialEq)]
+pub struct Scene {
+    pub(crate) document: Document,
+    folder: PathBuf,
+}
+
+impl fmt::Debug for Scene {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.debug_struct("Scene").field("folder", &self.folder).finish_non_exhaustive()
+    }
+}
+
+impl Scene {
+    /// Reads a scene file. Files that it names are looked for in its folder.
+    ///
+    /// # Errors
+    /// Where the file cannot be read or is not TOML.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneErrors> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            let message = format!("cannot read the scene {}: {error}", path.display());
+            SceneError::without_place(message, "give the path of a TOML scene file")
+        })?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        Ok(Self { document: Document::parse(&path.display().to_string(), &text)?, folder })
+    }
+
+    /// Takes a scene from its text. Files that it names are looked for in `folder`.
+    ///
+    /// # Errors
+    /// Where the text is not TOML.
+    pub fn parse(text: &str, folder: impl Into<PathBuf>) -> Result<Self, SceneErrors> {
+        Ok(Self { document: Document::parse("scene", text)?, folder: folder.into() })
+    }
+
+    /// A scene that was made by a program instead of written.
+    ///
+    /// # Errors
+    /// Where a number is not one that TOML can hold.
+    pub fn from_file(file: &SceneFile, folder: impl Into<PathBuf>) -> Result<Self, SceneErrors> {
+        let text = file.to_toml().map_err(|error| SceneError::without_place(error.to_string(), ""))?;
+        Self::parse(&text, folder)
+    }
+
+    /// Sets the value of a dotted key, such as `body.liver.law.young` to `8 kPa`: a TOML value, or else a string.
+    /// Entries of lists have numbers from 0 (`body.liver.load.0.force`). What is wrong with the value is found by
+    /// [`check`](Self::check) and shown in the override.
+    ///
+    /// # Errors
+    /// Where the key leads into a value that has no keys, or to an entry that a list does not have.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), SceneErrors> {
+        self.document.set(key, value)
+    }
+
+    /// Checks keys, types, units and ranges.
+    ///
+    /// # Errors
+    /// Everything that is wrong, in the order of the file.
+    pub fn check(&self) -> Result<SceneFile, SceneErrors> {
+        SceneErrors::unless_empty(check(&self.document, &schema()))?;
+        serde_json::from_value(self.document.root.to_json())
+            .map_err(|error| self.document.error_at(&[], error.to_string(), "").into())
+    }
+
+    /// A file that the scene names.
+    pub(crate) fn path(&self, file: &Path) -> PathBuf {
+        self.folder.join(file)
+    }
+}

@@ -1,0 +1,176 @@
+//! From scene to world: what is built, and what is refused with the line that it stands in.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use viscera_scene::{BuiltScene, Scene, SceneErrors};
+
+const SCENE: &str = include_str!("box.toml");
+const READ: &str = include_str!("refusals.txt");
+
+fn build(text: &str) -> Result<BuiltScene<f64>, SceneErrors> {
+    Scene::parse(text, Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/build"))?.build()
+}
+
+fn built(text: &str) -> BuiltScene<f64> {
+    build(text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// What stands in the right scene, and what stands there instead.
+const SLIPS: &[(&str, &str)] = &[
+    // Regions.
+    ("fix = \"z-min\"", "fix = { sphere = { centre = [0, 0, \"1 m\"], radius = \"5 cm\" } }"),
+    ("fix = \"z-min\"", "fix = \"bottom\""),
+    ("fix = \"z-min\"", "fix = [\"z-min\", { nodes = [1000] }]"),
+    ("fix = \"z-min\"", "fix = { box = { low = [0, \"1 m\", 0], high = [1, 0, 1] } }"),
+    ("fix = \"z-min\"", "fix = { plane = { point = [0, 0, 0], normal = [0, 0, 0] } }"),
+    ("region = \"x-max\"", "region = { nearest = [0, 0, 0] }"),
+    ("normal = [0, 0, 1] }", "normal = [0, 0, 1] }, intersection = []"),
+    ("point = [0, 0, 0.2]", "point = [0, 0, 0.35]"),
+    // Laws and models.
+    ("kind = \"tensor-mass\"", "kind = \"linear-tensor-mass\""),
+    ("kind = \"tensor-mass\" }", "kind = \"total-lagrangian\", adaptive = \"2 cm\" }"),
+    ("cells = [1, 1, 4]", "cells = [1, 1, 4], shape = \"hexahedra\""),
+    ("young = \"20 kPa\"", "young = \"20 kPa\", lambda = 3"),
+    ("law = { kind = \"st-venant-kirchhoff\", young = \"20 kPa\"", "law = { kind = \"linear\", young = \"20 kPa\""),
+    ("young = \"10 kPa\", poisson = 0.3", "lambda = -700, mu = \"1 kPa\""),
+    ("direction = [0, 0, 1]", "direction = [0, 0, 0]"),
+    ("direction = [0, 0, 1]", "along = [[0, 0, 0], [0, 0, 0]]"),
+    ("direction = [0, 0, 1]", "file = \"two-directions.csv\""),
+    ("factor = 3", "lambda = 1, mu = 1"),
+    // Meshes.
+    ("cells = [1, 1, 4]", "cells = [5000, 5000, 5000]"),
+    ("cells = [1, 1, 4]", "cells = [1, 1, 4], shape = \"hexahedra\", cut = \"five\""),
+    ("size = [\"10 cm\"", "size = [\"-10 cm\""),
+    ("generate = \"box\", size = [\"10 cm\", \"10 cm\", \"40 cm\"], cells = [1, 1, 4]", "file = \"no-such.msh\""),
+    (
+        "generate = \"box\", size = [\"10 cm\", \"10 cm\", \"40 cm\"], cells = [1, 1, 4]",
+        "generate = \"tube\", inner-radius = \"2 cm\", outer-radius = \"1 cm\", height = \"4 cm\", edge = \"5 mm\"",
+    ),
+    ("density = 1000", "density = 1000\nplace = { rotate = { axis = [0, 0, 0], angle = \"90 deg\" } }"),
+    // Curves and instruments.
+    ("[\"1 s\", [0, 0, \"1 cm\"]]", "[\"0 s\", [0, 0, \"1 cm\"]]"),
+    ("way.csv", "no-such.csv"),
+    ("way.csv", "short.csv"),
+    ("off = \"2 s\"", "off = \"1 s\""),
+    (
+        "size = [\"10 cm\", \"10 cm\", \"40 cm\"], cells = [1, 1, 4] }\ndensity = 1000\nlaw = { kind = \"st-venant-kirchhoff\", young = \"10 kPa\", poisson = 0.3 }\nmodel = { kind = \"tensor-mass\" }",
+        "size = [\"10 cm\", \"10 cm\", \"40 cm\"], cells = [1, 1, 4], shape = \"hexahedra\" }\ndensity = 1000\nlaw = { kind = \"st-venant-kirchhoff\", young = \"10 kPa\", poisson = 0.3 }",
+    ),
+    // Steps.
+    ("substep = \"1e-4 s\"", "substep = \"1 s\""),
+];
+
+/// What cannot be built is refused in its line, with what is near or what would do: `refusals.txt` is what people read.
+#[test]
+fn what_cannot_be_built_is_refused_in_its_line() {
+    let mut shown = String::new();
+    for (from, to) in SLIPS {
+        let text = SCENE.replacen(from, to, 1);
+        assert_ne!(text, SCENE, "the scene has no {from}");
+        let errors = match build(&text) {
+            Ok(_) => panic!("{to} is accepted"),
+            Err(errors) => errors.to_string(),
+        };
+        write!(shown, "{}\n\n", errors.replace(env!("CARGO_MANIFEST_DIR"), "…")).unwrap();
+    }
+    if shown != READ {
+        let fresh = std::env::temp_dir().join("viscera-refusals.txt");
+        std::fs::write(&fresh, &shown).unwrap();
+        let differs = shown.lines().zip(READ.lines()).find(|(now, before)| now != before);
+        panic!("the refusals read otherwise now, first {differs:#?}; all of them: {}", fresh.display());
+    }
+}
+
+/// The bar is 4 kg per half at 2000 kg/m³ and 2 kg at 1000: 6 kg, and the substep asked for is kept.
+#[test]
+fn a_part_has_its_own_density() {
+    let summary = built(SCENE).summary();
+    approx::assert_relative_eq!(summary.bodies[0].mass, 2.0 + 4.0, max_relative = 1e-12);
+    assert_eq!(summary.bodies[0].fixed, (4, "`z-min`".to_owned()));
+    assert_eq!(summary.bodies[0].prescribed, 4);
+    assert_eq!(summary.instruments[1].path, 0.01);
+}
+
+/// A turn by 90° about x takes z to −y; then the body is moved.
+#[test]
+fn a_body_is_turned_about_the_origin_and_then_moved() {
+    let place =
+        "place = { rotate = { axis = [2, 0, 0], angle = \"90 deg\" }, translate = [0, \"1 m\", 0] }\n[[body.bar.part]]";
+    let text = SCENE.replacen("[[body.bar.part]]", place, 1).replacen("point = [0, 0, 0.2]", "point = [0, 0, 0]", 1);
+    let built = built(&text);
+    let (low, high) = built.world.body(built.bodies["bar"]).mesh().bounds();
+    for (found, expected) in [(low, [0.0, 0.6, 0.0]), (high, [0.1, 1.0, 0.1])] {
+        (0..3).for_each(|axis| approx::assert_abs_diff_eq!(found[axis], expected[axis], epsilon = 1e-12));
+    }
+}
+
+/// A force on every node of a region of n nodes is n times as much as one on the region.
+#[test]
+fn a_force_per_node_is_a_total_force_times_the_nodes() {
+    let with = |load: &str| {
+        let text =
+            SCENE.replacen("pressure = \"1 kPa\"", load, 1).replacen("duration", "gravity = [0, 0, 0]\nduration", 1);
+        let mut built = built(&text);
+        built.world.step().unwrap();
+        built.world.body(built.bodies["bar"]).positions().to_vec()
+    };
+    assert_eq!(with("force-per-node = [0, \"10 mN\", 0]"), with("force = [0, \"100 mN\", 0]"), "10 nodes on the side");
+}
+
+/// A bar gives way by σ l/E where the curve that its fibres follow runs across it, and by a quarter of that where it runs
+/// along the bar and the fibres are four times as stiff.
+#[test]
+fn fibres_along_a_curve_take_its_direction_at_each_place() {
+    let stretch = |along: &str| {
+        let text = format!(
+            r#"
+            gravity = [0, 0, 0]
+            duration = "2 s"
+            step = "10 ms"
+            [body.bar]
+            mesh = {{ generate = "box", size = [0.1, 0.1, 0.4], cells = [1, 1, 4] }}
+            density = 1000
+            damping = "10 1/s"
+            law = {{ kind = "linear", young = "10 kPa", poisson = 0, fibre = {{ along = {along}, factor = 4 }} }}
+            fix = "z-min"
+            load = [{{ region = "z-max", traction = [0, 0, "100 Pa"] }}]
+            "#
+        );
+        let mut built = built(&text);
+        for _ in 0..built.steps() {
+            built.world.step().unwrap();
+        }
+        built.world.observe(built.bodies["bar"]).max_displacement
+    };
+    // u = σ l/E = 100 Pa · 0.4 m / 10 kPa = 4 mm across, a quarter of it along; poisson 0 and free of locking.
+    approx::assert_relative_eq!(stretch("[[0, 0, 0], [1, 0, 0]]"), 4e-3, max_relative = 0.01);
+    approx::assert_relative_eq!(stretch("[[0, 0, 0], [0, 0, 1]]"), 1e-3, max_relative = 0.01);
+    // Up to half the height nearest to a stretch along the bar, above to one across it: (2 mm)/4 + 2 mm.
+    approx::assert_relative_eq!(
+        stretch("[[0.05, 0.05, 0.1], [0.05, 0.05, -10], [10, 0.05, -10], [10, 0.05, 0.3], [-10, 0.05, 0.3]]"),
+        2.5e-3,
+        max_relative = 0.05
+    );
+}
+
+/// At the density of water, Gmsh's bar of 1 × 1 × 2 cm weighs 2 g. VTK's cube of 1 cm, of which the file holds only the skin,
+/// weighs 1 g, less what the lattice cuts off its edges: with ten cells along an edge, under 5 % of it.
+#[test]
+fn a_mesh_in_millimetres_has_its_true_mass() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../viscera-io/tests/data");
+    let mass = |mesh: &str| {
+        let text = format!(
+            "duration = 1\n[body.cube]\nmesh = {mesh}\ndensity = \"1 g/cm^3\"\n\
+             law = {{ kind = \"linear\", young = \"1 kPa\", poisson = 0.3 }}"
+        );
+        let built = Scene::parse(&text, &data).and_then(|scene| scene.build::<f64>());
+        let summary = built.unwrap_or_else(|errors| panic!("{errors}")).summary();
+        assert!(!summary.bodies[0].notices.is_empty(), "what was found in the file is told");
+        summary.bodies[0].mass
+    };
+    let bar = mass("{ file = \"bar-22-ascii.msh\", unit = \"mm\", scale = 10 }");
+    approx::assert_relative_eq!(bar, 2e-3, max_relative = 1e-9);
+    let cube = mass("{ surface = \"cube-ascii.stl\", unit = \"mm\", scale = 10, edge = \"1 mm\" }");
+    approx::assert_relative_eq!(cube, 1e-3, max_relative = 0.05);
+}

@@ -1,0 +1,222 @@
+//! Corotational hexahedra in batches of lanes: one rotation for each, 2×2×2 points.
+
+use fearless_simd::{Simd, dispatch};
+
+use super::Corotational;
+use super::formulation::{Formulation, Rotation, Tangent};
+use super::hooke::{FIBRED, Hooke, ISOTROPIC};
+use crate::material::Tissue;
+use crate::math::rotation::qr;
+use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
+use crate::mesh::{GaussRule, HexMesh};
+use crate::model::block_table::BlockTable;
+use crate::model::tet_loop::scatter_corner;
+use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
+use crate::model::{ForceModel, ModelError, Scratch};
+
+/// Gauss points of a cell.
+const POINTS: usize = 8;
+/// Gradients at the centre: three numbers for each corner.
+const CENTRE: usize = 24;
+/// Numbers of a rotation.
+const ROTATION: usize = 9;
+
+/// Corotational hexahedra. R is that of the mean edges, J = F at the centre. For QR the gradients are those of the rest
+/// shape turned so that its own mean edges 1 and 2 lie along its first axes, as with tetrahedra.
+#[derive(Clone, Debug)]
+pub(super) struct CorotationalHexes<T: Scalar> {
+    corners: BlockTable<u32>,
+    /// Gradients at the centre.
+    centres: BlockTable<T>,
+    /// Gradients and volume of each Gauss point.
+    points: BlockTable<T>,
+    law: BlockTable<T>,
+    formulation: Formulation,
+    fibred: bool,
+}
+
+impl<T: Scalar> CorotationalHexes<T> {
+    pub(super) fn new(mesh: &HexMesh, tissue: &Tissue, formulation: Formulation) -> Result<Self, ModelError> {
+        mesh.check_indices()?;
+        let cells = mesh.cells.len();
+        let fibred = super::has_fibres(tissue);
+        let mut hexes = Self {
+            corners: BlockTable::new(T::LANES, cells, 8, 0),
+            centres: BlockTable::new(T::LANES, cells, CENTRE, T::ZERO),
+            points: BlockTable::new(T::LANES, cells, POINTS * POINT, T::ZERO),
+            law: BlockTable::new(T::LANES, cells, if fibred { FIBRED } else { ISOTROPIC }, T::ZERO),
+            formulation,
+            fibred,
+        };
+        for row in 0..hexes.corners.padded_rows() {
+            // padding repeats the last cell, without volume
+            let cell = row.min(cells - 1);
+            let points = mesh.gauss_points(cell, GaussRule::Two)?;
+            let centre = mesh.centre_gradients(cell)?;
+            let frame = match formulation.rotation {
+                Rotation::Qr => qr(&mesh.mean_edges(cell)),
+                Rotation::Polar | Rotation::Svd => Mat3::IDENTITY,
+            };
+            let turned = |gradients: [Vec3<f64>; 8]| gradients.map(|gradient| frame.transpose_mul(gradient).to_array());
+            let there = if row < cells { 1.0 } else { 0.0 };
+            let numbers = points
+                .iter()
+                .flat_map(|point| turned(point.gradients).into_iter().flatten().chain([there * point.volume]));
+            let stiffness = tissue.at_rest(cell);
+            let law = Hooke::numbers(&stiffness, frame.transpose_mul(stiffness.direction), fibred);
+            hexes.corners.set_row(row, mesh.cells[cell]);
+            hexes.centres.set_row(row, turned(centre).into_iter().flatten().map(T::from_f64));
+            hexes.points.set_row(row, numbers.map(T::from_f64));
+            hexes.law.set_row(row, law.into_iter().map(T::from_f64));
+        }
+        Ok(hexes)
+    }
+
+    #[inline(always)]
+    fn load_law<S: Simd>(&self, simd: S, block: &[T]) -> Hooke<T::Lanes<S>> {
+        let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); FIBRED];
+        for column in 0..if self.fibred { FIBRED } else { ISOTROPIC } {
+            numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        }
+        Hooke::at(&numbers, self.fibred)
+    }
+
+    /// For every batch and Gauss point, adds V · stress · gradients to the corners.
+    #[inline(always)]
+    fn add_with<S: Simd, const PRODUCT: bool>(
+        &self,
+        simd: S,
+        x: &[[T; 4]],
+        dx: &[[T; 4]],
+        rotations: Option<&[T]>,
+        out: &mut [[T; 4]],
+    ) {
+        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
+        for (batch, (((nodes, centre), points), law)) in tables.enumerate() {
+            let hooke = self.load_law(simd, law);
+            let place = gather_corners(simd, x, nodes);
+            let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { place };
+            let centre = load_gradients::<T, S>(simd, centre);
+            let mean = deformation(&place, &centre);
+            let r = match rotations {
+                Some(rotations) => load_rotation(simd, &rotations[batch * ROTATION * T::LANES..]),
+                None => self.formulation.rotation(&mean),
+            };
+            let dr =
+                if PRODUCT { self.formulation.rotation_along(&mean, &r, &deformation(&direction, &centre)) } else { r };
+            let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+            for point in points.chunks_exact(POINT * T::LANES) {
+                let gradients = load_gradients::<T, S>(simd, point);
+                let f = deformation(&place, &gradients);
+                let stress = if PRODUCT {
+                    let df = deformation(&direction, &gradients);
+                    self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df))
+                } else {
+                    self.formulation.stress(&hooke, &r, &f)
+                };
+                let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+                for corner in 0..8 {
+                    forces[corner] += stress * gradients[corner];
+                }
+            }
+            for corner in 0..8 {
+                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn linearize_with<S: Simd>(&self, simd: S, x: &[[T; 4]], linearization: &mut [T]) {
+        let rows = linearization.chunks_exact_mut(ROTATION * T::LANES);
+        for ((nodes, centre), row) in self.corners.blocks().zip(self.centres.blocks()).zip(rows) {
+            let place = gather_corners(simd, x, nodes);
+            let r = self.formulation.rotation(&deformation(&place, &load_gradients::<T, S>(simd, centre)));
+            for i in 0..ROTATION {
+                r.columns[i / 3][i % 3].store(&mut row[i * T::LANES..]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn load_rotation<T: Scalar, S: Simd>(simd: S, row: &[T]) -> Mat3<T::Lanes<S>> {
+    let number = |i: usize| T::Lanes::<S>::load(simd, &row[i * T::LANES..]);
+    let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+    Mat3::from_columns(column(0), column(1), column(2))
+}
+
+impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
+    fn name(&self) -> &'static str {
+        Corotational::INFO.name
+    }
+
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, None, forces));
+        scratch.finish(out);
+    }
+
+    fn linearization_len(&self) -> usize {
+        match self.formulation.tangent {
+            Tangent::Frozen => self.corners.padded_rows() * ROTATION,
+            Tangent::Exact => 0,
+        }
+    }
+
+    fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
+        if self.formulation.tangent == Tangent::Frozen {
+            scratch.start(x);
+            let (nodal, linearization) = scratch.start_linearization(self.linearization_len());
+            dispatch!(dispatch_level(), simd => self.linearize_with(simd, nodal, linearization));
+        }
+    }
+
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        scratch.start_direction(dx);
+        let Scratch { nodal, direction, forces, linearization, is_linearized } = scratch;
+        let rotations = is_linearized.then_some(&linearization[..]);
+        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, rotations, forces));
+        scratch.finish(out);
+    }
+
+    fn energy(&self, x: &[Vec3<T>]) -> f64 {
+        let mut total = 0.0;
+        for row in 0..self.corners.rows() {
+            let mut law = [0.0; FIBRED];
+            for column in 0..if self.fibred { FIBRED } else { ISOTROPIC } {
+                law[column] = self.law.get(row, column).to_f64();
+            }
+            let hooke = Hooke::at(&law, self.fibred);
+            let corners = std::array::from_fn(|a| x[self.corners.get(row, a) as usize].cast::<f64>());
+            let gradients = |table: &BlockTable<T>, start: usize| -> [Vec3<f64>; 8] {
+                let number = |i: usize| table.get(row, start + i).to_f64();
+                std::array::from_fn(|a| Vec3::new(number(3 * a), number(3 * a + 1), number(3 * a + 2)))
+            };
+            let r = self.formulation.rotation(&deformation(&corners, &gradients(&self.centres, 0)));
+            for point in 0..POINTS {
+                let f = deformation(&corners, &gradients(&self.points, point * POINT));
+                let volume = self.points.get(row, point * POINT + 24).to_f64();
+                total += volume * self.formulation.energy(&hooke, &r, &f);
+            }
+        }
+        total
+    }
+
+    fn remove(&mut self, cells: &[u32]) {
+        for &cell in cells {
+            for point in 0..POINTS {
+                *self.points.get_mut(cell as usize, point * POINT + 24) = T::ZERO;
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.corners.bytes() + self.centres.bytes() + self.points.bytes() + self.law.bytes()
+    }
+
+    fn clone_box(&self) -> Box<dyn ForceModel<T>> {
+        Box::new(self.clone())
+    }
+}

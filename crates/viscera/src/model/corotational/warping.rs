@@ -1,0 +1,277 @@
+//! Node-wise stiffness warping: one rotation for each node instead of each element, and what it costs.
+//!
+//! f_i = R_i Σ_j K_ij (R_iᵀ x_j − X_j)
+//!
+//! R_i is the polar rotation of the deformation that fits the node's incident edges best, A_i (Σ e0 e0ᵀ)⁻¹ with
+//! A_i = Σ e e0ᵀ. Where neighbouring rotations differ, f_ij ≠ −f_ji: the forces on a bent body have a sum, ghost forces
+//! that push and turn it. This is what element-wise rotations cured, and the model is here to compare them with.
+//!
+//! Source: Müller, Dorsey, McMillan, Jagnow, Cutler, *Stable real-time deformations* (2002), section 4.
+
+use super::hooke::Hooke;
+use super::{LAWS, check_law};
+use crate::material::{LawKind, Tissue};
+use crate::math::rotation::polar;
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::mesh::{TET_EDGES, TetMesh, VolumeMesh};
+use crate::model::registry::Claims;
+use crate::model::tet_loop::RestTet;
+use crate::model::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+
+/// Numbers of a rotation.
+const ROTATION: usize = 9;
+
+/// Node-wise stiffness warping of linear tissue, on tetrahedra; a comparator, not a model to work with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessWarping {
+    tissue: Tissue,
+}
+
+impl StiffnessWarping {
+    pub(crate) const INFO: ModelInfo = ModelInfo {
+        name: "stiffness-warping",
+        purpose: "for comparison only: rotations at the nodes, whose ghost forces push a bent body about",
+        hexahedra: false,
+        laws: LAWS,
+    };
+
+    pub(crate) fn claims(_law: LawKind, _hexahedra: bool) -> Claims {
+        Claims {
+            of_the_law: false,
+            objective: true,
+            force_free: false,
+            torque_free: false,
+            conservative: false,
+            exact_products: false,
+            symmetric_products: false,
+        }
+    }
+
+    /// A model of `tissue`.
+    pub fn new(tissue: Tissue) -> Self {
+        Self { tissue }
+    }
+}
+
+impl ModelRecipe for StiffnessWarping {
+    fn kind(&self) -> ModelKind {
+        ModelKind::StiffnessWarping
+    }
+
+    fn tissue(&self) -> &Tissue {
+        &self.tissue
+    }
+
+    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+        self.build(mesh)
+    }
+
+    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
+        self.build(mesh)
+    }
+}
+
+impl StiffnessWarping {
+    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+        let model = ModelKind::StiffnessWarping;
+        check_law(model, &self.tissue)?;
+        self.tissue.check_count(mesh.cell_count())?;
+        let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
+        Ok(Box::new(WarpedTets::new(mesh, &self.tissue)?))
+    }
+}
+
+#[derive(Clone, Debug)]
+struct WarpedTets<T> {
+    cells: Vec<Cell<T>>,
+    edges: Vec<Edge<T>>,
+    /// (Σ e0 e0ᵀ)⁻¹ of each node.
+    fits: Vec<Mat3<T>>,
+}
+
+#[derive(Clone, Debug)]
+struct Cell<T> {
+    corners: [u32; 4],
+    edges: [u32; 6],
+    /// Dm⁻¹.
+    inverse: Mat3<T>,
+    volume: T,
+    hooke: Hooke<T>,
+    removed: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Edge<T> {
+    nodes: [u32; 2],
+    /// From the first node to the second, at rest.
+    rest: Vec3<T>,
+    /// How many cells still have it.
+    cells: u32,
+}
+
+impl<T: Scalar> WarpedTets<T> {
+    fn new(mesh: &TetMesh, tissue: &Tissue) -> Result<Self, ModelError> {
+        mesh.check_indices()?;
+        let fibred = super::has_fibres(tissue);
+        let mut numbers = std::collections::BTreeMap::new();
+        let mut edges: Vec<Edge<T>> = Vec::new();
+        let mut edge_between = |[a, b]: [u32; 2]| {
+            let nodes = [a.min(b), a.max(b)];
+            let number = *numbers.entry(nodes).or_insert_with(|| {
+                let [from, to] = nodes.map(|node| mesh.nodes[node as usize]);
+                edges.push(Edge { nodes, rest: (to - from).cast(), cells: 0 });
+                edges.len() as u32 - 1
+            });
+            edges[number as usize].cells += 1;
+            number
+        };
+        let cell = |(cell, &corners): (usize, &[u32; 4])| {
+            let rest = RestTet::new(mesh, cell)?;
+            let stiffness = tissue.at_rest(cell);
+            let law = Hooke::numbers(&stiffness, stiffness.direction, fibred);
+            let law: Vec<T> = law.into_iter().map(T::from_f64).collect();
+            Ok(Cell {
+                corners,
+                edges: TET_EDGES.map(|pair| edge_between(pair.map(|corner| corners[corner]))),
+                inverse: rest.inverse.cast(),
+                volume: T::from_f64(rest.volume),
+                hooke: Hooke::at(&law, fibred),
+                removed: false,
+            })
+        };
+        let cells = mesh.cells.iter().enumerate().map(cell).collect::<Result<_, ModelError>>()?;
+        let mut tets = Self { cells, edges, fits: vec![Mat3::ZERO; mesh.nodes.len()] };
+        tets.fit();
+        Ok(tets)
+    }
+
+    /// Brings the fits up to date with the edges that are left.
+    fn fit(&mut self) {
+        self.fits.fill(Mat3::ZERO);
+        for edge in self.edges.iter().filter(|edge| edge.cells > 0) {
+            for node in edge.nodes {
+                self.fits[node as usize] += edge.rest.outer(edge.rest);
+            }
+        }
+        for fit in &mut self.fits {
+            // a node without cells has nothing to fit
+            let inverse = fit.inverse();
+            *fit = if inverse.is_finite() { inverse } else { Mat3::ZERO };
+        }
+    }
+
+    /// R of every node at `x`, nine numbers each.
+    fn rotate(&self, x: &[Vec3<T>], rotations: &mut [T]) {
+        rotations.fill(T::ZERO);
+        for edge in self.edges.iter().filter(|edge| edge.cells > 0) {
+            let [from, to] = edge.nodes.map(|node| node as usize);
+            let moved = (x[to] - x[from]).outer(edge.rest);
+            for node in [from, to] {
+                let sum = read(rotations, node) + moved;
+                write(rotations, node, &sum);
+            }
+        }
+        for (node, &fit) in self.fits.iter().enumerate() {
+            let r = polar(&(read(rotations, node) * fit));
+            write(rotations, node, &r);
+        }
+    }
+
+    /// Adds R_p V σ(sym(R_pᵀ A) − `rest`) α_p for each corner of each cell, with A the gradient of `x` over the rest shape.
+    fn add(&self, x: &[Vec3<T>], rest: T, rotations: &[T], out: &mut [Vec3<T>]) {
+        for cell in self.cells.iter().filter(|cell| !cell.removed) {
+            let f = cell.gradient(x);
+            let [a, b, c] = cell.inverse.transpose().columns;
+            for (corner, gradient) in [-(a + b + c), a, b, c].into_iter().enumerate() {
+                let node = cell.corners[corner] as usize;
+                let r = read(rotations, node);
+                let strain = (r.transpose() * f - Mat3::diagonal(rest)).symmetric_part();
+                out[node] += r * (cell.hooke.stress(strain) * (gradient * cell.volume));
+            }
+        }
+    }
+}
+
+impl<T: Scalar> Cell<T> {
+    /// Σ x_j α_jᵀ.
+    fn gradient(&self, x: &[Vec3<T>]) -> Mat3<T> {
+        let [a, b, c, d] = self.corners.map(|node| x[node as usize]);
+        Mat3::from_columns(b - a, c - a, d - a) * self.inverse
+    }
+}
+
+fn read<T: Scalar>(rotations: &[T], node: usize) -> Mat3<T> {
+    let n = &rotations[ROTATION * node..][..ROTATION];
+    Mat3::from_columns(Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]), Vec3::new(n[6], n[7], n[8]))
+}
+
+fn write<T: Scalar>(rotations: &mut [T], node: usize, r: &Mat3<T>) {
+    for (row, column) in rotations[ROTATION * node..][..ROTATION].chunks_exact_mut(3).zip(r.columns) {
+        row.copy_from_slice(&column.to_array());
+    }
+}
+
+impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
+    fn name(&self) -> &'static str {
+        StiffnessWarping::INFO.name
+    }
+
+    fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        let rotations = &mut scratch.room_for_linearization(self.linearization_len())[ROTATION * self.fits.len()..];
+        self.rotate(x, rotations);
+        self.add(x, T::ONE, rotations, out);
+    }
+
+    /// The rotations of products, then those of forces, which may be asked for elsewhere.
+    fn linearization_len(&self) -> usize {
+        2 * ROTATION * self.fits.len()
+    }
+
+    fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
+        self.rotate(x, &mut scratch.room_for_linearization(self.linearization_len())[..ROTATION * self.fits.len()]);
+        scratch.is_linearized = true;
+    }
+
+    fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        let held = scratch.is_linearized;
+        let rotations = scratch.room_for_linearization(self.linearization_len());
+        let (products, forces) = rotations.split_at_mut(ROTATION * self.fits.len());
+        if !held {
+            self.rotate(x, forces);
+        }
+        self.add(dx, T::ZERO, if held { products } else { forces }, out);
+    }
+
+    /// ½ V ε:σ(ε), the mean over the corners' rotations: a measure of deformation, not a potential of the forces.
+    fn energy(&self, x: &[Vec3<T>]) -> f64 {
+        let mut rotations = vec![T::ZERO; ROTATION * self.fits.len()];
+        self.rotate(x, &mut rotations);
+        let of_cell = |cell: &Cell<T>| {
+            let f = cell.gradient(x);
+            let of_corner = |node: u32| {
+                let strain = (read(&rotations, node as usize).transpose() * f - Mat3::IDENTITY).symmetric_part();
+                (cell.hooke.energy(strain) * cell.volume).to_f64()
+            };
+            0.25 * cell.corners.into_iter().map(of_corner).sum::<f64>()
+        };
+        self.cells.iter().filter(|cell| !cell.removed).map(of_cell).sum()
+    }
+
+    fn remove(&mut self, cells: &[u32]) {
+        for &cell in cells {
+            let cell = &mut self.cells[cell as usize];
+            if !std::mem::replace(&mut cell.removed, true) {
+                cell.edges.iter().for_each(|&edge| self.edges[edge as usize].cells -= 1);
+            }
+        }
+        self.fit();
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.cells[..]) + size_of_val(&self.edges[..]) + size_of_val(&self.fits[..])
+    }
+
+    fn clone_box(&self) -> Box<dyn ForceModel<T>> {
+        Box::new(self.clone())
+    }
+}

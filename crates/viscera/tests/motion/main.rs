@@ -1,0 +1,19 @@
+//! Bodies in motion: the explicit scheme against closed forms, and what a world promises about its steps.
+//!
+//! `dynamics_*` compare with theory, `reference_*` with computations of others, `cutting_*` and `world_*` hold what a
+//! user relies on, in both precisions where rounding could tell them apart.
+
+mod cutting_cautery;
+mod cutting_pieces;
+mod dynamics_chain;
+mod dynamics_free_flight;
+mod dynamics_loads;
+mod dynamics_statics;
+mod grasper;
+mod reference_cylinder;
+mod reference_tube;
+mod support;
+mod world_invariance;
+mod world_refusal;
+mod world_snapshot;
+mod world_stable_step;
