@@ -3,7 +3,7 @@ use viscera::curve::Curve;
 use viscera::material::Tissue;
 use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
-use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, TensorMass, TotalLagrangian};
+use viscera::model::{LinearTensorMass, ModelError, ModelRecipe, NodallyIntegrated, TensorMass, TotalLagrangian};
 
 use super::curve::curve;
 use super::law::{densities, tissue};
@@ -59,6 +59,7 @@ fn recipe(
         (None, VolumeMesh::Hex(_), _) => ModelName::TotalLagrangian,
         (None, VolumeMesh::Tet(_), LawName::Linear) => ModelName::LinearTensorMass,
         (None, VolumeMesh::Tet(_), LawName::StVenantKirchhoff) => ModelName::TensorMass,
+        (None, VolumeMesh::Tet(_), LawName::NeoHookean | LawName::StableNeoHookean) => ModelName::TotalLagrangian,
     };
     let adaptive = file.model.as_ref().and_then(|model: &ModelFile| model.adaptive);
     if adaptive.is_some() && kind != ModelName::TensorMass {
@@ -68,6 +69,7 @@ fn recipe(
     Ok(match kind {
         ModelName::LinearTensorMass => Box::new(LinearTensorMass::new(tissue)),
         ModelName::TotalLagrangian => Box::new(TotalLagrangian::new(tissue)),
+        ModelName::NodallyIntegrated => Box::new(NodallyIntegrated::new(tissue)),
         ModelName::TensorMass => {
             let model = TensorMass::new(tissue);
             Box::new(adaptive.map_or(model.clone(), |threshold| model.adaptive(threshold.0)))

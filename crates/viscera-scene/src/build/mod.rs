@@ -13,7 +13,7 @@ use indexmap::IndexMap;
 use viscera::math::Scalar;
 use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
-use viscera::world::{BodyId, InstrumentId, Substep, World, WorldConfig, WorldError};
+use viscera::world::{BodyId, InstrumentId, Integrator, Substep, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
 use crate::file::{InstrumentFile, SceneFile, SubstepFile};
@@ -56,10 +56,10 @@ impl Scene {
         let config = WorldConfig {
             gravity: file.gravity.map(|component| component.0),
             step: file.step.0,
-            substep: match file.substep {
+            integrator: Integrator::Explicit(match file.substep {
                 SubstepFile::Automatic(_) => Substep::Automatic,
                 SubstepFile::Fixed(time) => Substep::Fixed(time.0),
-            },
+            }),
         };
         let mut world = World::new(config).map_err(|error| root.error(error, ""))?;
         let mut notices = Vec::new();

@@ -70,6 +70,9 @@ pub enum ModelName {
     TensorMass,
     /// Stress from the deformation of each cell; every law, tetrahedra and hexahedra.
     TotalLagrangian,
+    /// Stress from the mean deformation at each node: does not lock, however close to incompressible; tetrahedra, every
+    /// law but the linear ones.
+    NodallyIntegrated,
 }
 
 /// What becomes of pieces that are cut off.

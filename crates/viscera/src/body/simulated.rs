@@ -1,9 +1,10 @@
-use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion};
+use super::{Body, BodyError, BodyState, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
 use crate::model::{ModelKind, Precision, Scratch};
+use crate::solver::Filter;
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -19,8 +20,11 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) law: &'static str,
     /// Damping rate γ_i/m_i [1/s].
     pub(crate) damping: T,
+    /// α of Rayleigh's damping [s].
+    pub(crate) stiffness_damping: T,
     pub(crate) rest: Vec<Vec3<T>>,
     pub(crate) prescribed: Vec<Curve<Vec3<f64>>>,
+    pub(crate) guides: Guides,
     pub(crate) loads: NodalLoads<T>,
     pub(crate) loose_pieces: LoosePieces,
     /// Cells at each node: those of node n are `cells_at_nodes.1[starts[n]..starts[n + 1]]`.
@@ -54,9 +58,24 @@ impl<T: Scalar> SimulatedBody<T> {
     where
         T: Precision,
     {
-        let Body { name, mesh, density, model, keep_volume, damping, fixed, prescribed, loads, loose_pieces } = body;
+        let Body {
+            name,
+            mesh,
+            density,
+            model,
+            keep_volume,
+            damping,
+            stiffness_damping,
+            fixed,
+            prescribed,
+            guided,
+            loads,
+            loose_pieces,
+        } = body;
         let body = || name.clone();
         check_range(&name, "damping", damping, damping >= 0.0, "zero or positive [1/s]")?;
+        let good = stiffness_damping >= 0.0;
+        check_range(&name, "stiffness damping", stiffness_damping, good, "zero or positive [s]")?;
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
@@ -69,7 +88,9 @@ impl<T: Scalar> SimulatedBody<T> {
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
-        let mut motions = vec![NodeMotion::Free; mesh.nodes().len()];
+        let (guides, guide_at_nodes) = Guides::new(&name, guided, &mesh)?;
+        let guided = |guide: Option<u32>| guide.map_or(NodeMotion::Free, NodeMotion::Guided);
+        let mut motions: Vec<_> = guide_at_nodes.into_iter().map(guided).collect();
         let mut curves = Vec::new();
         for (number, (region, curve)) in prescribed.into_iter().enumerate() {
             mark(&mut motions, &region, &mesh, NodeMotion::Prescribed(number as u32))
@@ -95,6 +116,7 @@ impl<T: Scalar> SimulatedBody<T> {
             model: recipe.kind(),
             law: recipe.tissue().kind().name(),
             damping: T::from_f64(damping),
+            stiffness_damping: T::from_f64(stiffness_damping),
             rest: state.positions.clone(),
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
@@ -106,6 +128,7 @@ impl<T: Scalar> SimulatedBody<T> {
             mesh,
             corner_masses,
             cell_volumes,
+            guides,
             loads,
             loose_pieces,
             cells_at_nodes,
@@ -149,22 +172,29 @@ impl<T: Scalar> SimulatedBody<T> {
         &self.state.velocities
     }
 
+    /// The directions in which forces move a node.
+    pub(crate) fn free_directions(&self, node: usize) -> Filter<T> {
+        free_directions(&self.guides, self.state.motions[node])
+    }
+
     /// Sets the velocities of the free nodes [m/s], for a body that starts in motion.
     pub fn set_velocities(&mut self, velocity: impl Fn(Vec3<f64>) -> Vec3<f64>) {
         for (node, motion) in self.state.motions.iter().enumerate() {
-            if *motion == NodeMotion::Free {
-                self.state.velocities[node] = velocity(self.state.positions[node].cast()).cast();
-            }
+            let filter = free_directions(&self.guides, *motion);
+            let wanted = velocity(self.state.positions[node].cast()).cast();
+            self.state.velocities[node] = filter.merge(wanted, self.state.velocities[node]);
         }
+        self.state.past.is_known = false;
     }
 
     /// Sets the positions of the free nodes [m], for a body that starts deformed.
     pub fn set_positions(&mut self, position: impl Fn(Vec3<f64>) -> Vec3<f64>) {
         for (node, motion) in self.state.motions.iter().enumerate() {
-            if *motion == NodeMotion::Free {
-                self.state.positions[node] = position(self.state.positions[node].cast()).cast();
-            }
+            let filter = free_directions(&self.guides, *motion);
+            let wanted = position(self.state.positions[node].cast()).cast();
+            self.state.positions[node] = filter.merge(wanted, self.state.positions[node]);
         }
+        self.state.past.is_known = false;
         self.state.positions_changed();
     }
 
@@ -176,6 +206,12 @@ impl<T: Scalar> SimulatedBody<T> {
     /// The current surface, cut faces included.
     pub fn surface(&self) -> Vec<SurfaceTriangle> {
         self.boundary.surface(&self.state.removed)
+    }
+
+    /// Asks for the memory of the state before the last step, for schemes over two steps, and for that of its backup.
+    pub(crate) fn reserve_past(&mut self) {
+        self.state.past.reserve(self.rest.len());
+        self.backup = MotionBackup::new(&self.state);
     }
 
     /// Brings the internal forces up to date with positions and cells.
@@ -204,6 +240,14 @@ impl<T: Scalar> SimulatedBody<T> {
             *force = gravity * mass;
         }
         self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
+    }
+}
+
+fn free_directions<T: Scalar>(guides: &Guides, motion: NodeMotion) -> Filter<T> {
+    match motion {
+        NodeMotion::Free => Filter::Free,
+        NodeMotion::Guided(guide) => guides.filter(guide),
+        _ => Filter::Held,
     }
 }
 
@@ -277,6 +321,7 @@ fn initial_state<T: Scalar>(
         models,
         forces_are_current: false,
         squared_frequency: None,
+        past: PastState::default(),
     })
 }
 

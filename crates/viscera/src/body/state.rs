@@ -10,6 +10,8 @@ pub enum NodeMotion {
     Fixed,
     /// Along the body's prescribed motion of this number.
     Prescribed(u32),
+    /// By the forces on it, but for the directions of the body's guide of this number.
+    Guided(u32),
     /// With the tip of the world's instrument of this number.
     Held(u32),
     /// No longer: every cell around it was removed.
@@ -42,6 +44,40 @@ pub struct BodyState<T: Scalar> {
     pub forces_are_current: bool,
     /// Bound of ω_max² at the positions [1/s²], where it is known.
     pub squared_frequency: Option<f64>,
+    /// The state before the last step, for schemes over two steps.
+    pub past: PastState<T>,
+}
+
+/// Where a body was before the last step. Of no size unless the scheme asks for it.
+#[derive(Clone, Debug, Default)]
+pub struct PastState<T> {
+    /// Positions [m].
+    pub positions: Vec<Vec3<T>>,
+    /// Velocities [m/s].
+    pub velocities: Vec<Vec3<T>>,
+    /// Whether the body went on from there: not before the first step, nor after positions or velocities were set.
+    pub is_known: bool,
+}
+
+impl<T: Scalar> PastState<T> {
+    /// Asks for its memory.
+    pub(crate) fn reserve(&mut self, nodes: usize) {
+        self.positions.resize(nodes, Vec3::ZERO);
+        self.velocities.resize(nodes, Vec3::ZERO);
+    }
+
+    /// Copies a state that is about to be left behind.
+    pub(crate) fn keep(&mut self, positions: &[Vec3<T>], velocities: &[Vec3<T>]) {
+        self.positions.copy_from_slice(positions);
+        self.velocities.copy_from_slice(velocities);
+        self.is_known = true;
+    }
+
+    fn copy_from(&mut self, other: &Self) {
+        self.positions.clone_from(&other.positions);
+        self.velocities.clone_from(&other.velocities);
+        self.is_known = other.is_known;
+    }
 }
 
 impl<T: Scalar> Clone for BodyState<T> {
@@ -59,11 +95,17 @@ impl<T: Scalar> Clone for BodyState<T> {
             models: self.models.iter().map(|model| model.clone_box()).collect(),
             forces_are_current: self.forces_are_current,
             squared_frequency: self.squared_frequency,
+            past: self.past.clone(),
         }
     }
 }
 
 impl<T: Scalar> BodyState<T> {
+    /// How many rings of cells around a node its force depends on.
+    pub(crate) fn rings(&self) -> usize {
+        self.models.iter().map(|model| model.rings()).max().unwrap_or(1)
+    }
+
     /// Says that the positions were changed: forces and frequency have to be found anew.
     pub(crate) fn positions_changed(&mut self) {
         self.forces_are_current = false;
@@ -88,6 +130,7 @@ pub(crate) struct MotionBackup<T> {
     grips: Vec<Vec3<T>>,
     forces_are_current: bool,
     squared_frequency: Option<f64>,
+    past: PastState<T>,
 }
 
 impl<T: Scalar> MotionBackup<T> {
@@ -107,6 +150,7 @@ impl<T: Scalar> MotionBackup<T> {
         self.grips.clone_from(&state.grips);
         self.forces_are_current = state.forces_are_current;
         self.squared_frequency = state.squared_frequency;
+        self.past.copy_from(&state.past);
     }
 
     /// Puts the copy back.
@@ -118,5 +162,6 @@ impl<T: Scalar> MotionBackup<T> {
         state.grips.clone_from(&self.grips);
         state.forces_are_current = self.forces_are_current;
         state.squared_frequency = self.squared_frequency;
+        state.past.copy_from(&self.past);
     }
 }

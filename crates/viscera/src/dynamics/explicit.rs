@@ -10,9 +10,11 @@
 //!
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
 
-use crate::body::{NodeMotion, SimulatedBody};
-use crate::math::{Scalar, Vec3};
+use super::Drive;
+use crate::body::SimulatedBody;
+use crate::math::Scalar;
 use crate::model::Scratch;
+use crate::solver::Filter;
 
 /// Share of the stability limit 2/ω_max that automatic sub-steps use: room for the tissue to stiffen within a step.
 const SAFETY: f64 = 0.9;
@@ -36,17 +38,6 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
-/// What drives the nodes that forces do not move, over one sub-step.
-#[derive(Clone, Copy, Debug)]
-pub struct Drive<'a, T> {
-    /// Time at the end of the sub-step [s].
-    pub end: f64,
-    /// Tips of the instruments at that time [m].
-    pub tips: &'a [Vec3<f64>],
-    /// Gravity [m/s²].
-    pub gravity: Vec3<T>,
-}
-
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
 pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
     kick_and_drift(body, dt, drive);
@@ -59,26 +50,22 @@ pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_
 /// First half: v_½ and x⁺, and driven nodes to where they must be.
 fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
     let (step, half) = (T::from_f64(dt), T::from_f64(0.5 * dt));
-    let state = &mut body.state;
-    for node in 0..state.positions.len() {
-        let target = match state.motions[node] {
-            NodeMotion::Free => {
-                let force = body.external_forces[node] - state.internal_forces[node];
-                let acceleration = force / state.masses[node] - state.velocities[node] * body.damping;
-                let velocity = acceleration.mul_add(half, state.velocities[node]);
-                state.velocities[node] = velocity;
-                state.positions[node] = velocity.mul_add(step, state.positions[node]);
-                continue;
-            }
-            NodeMotion::Fixed | NodeMotion::Retired => {
-                state.velocities[node] = Vec3::ZERO;
-                continue;
-            }
-            NodeMotion::Prescribed(curve) => body.rest[node] + body.prescribed[curve as usize].at(drive.end).cast(),
-            NodeMotion::Held(instrument) => state.grips[node] + drive.tips[instrument as usize].cast(),
-        };
-        state.velocities[node] = (target - state.positions[node]) / step;
-        state.positions[node] = target;
+    for node in 0..body.state.positions.len() {
+        let (target, filter) = (drive.target(body, node), body.free_directions(node));
+        let state = &mut body.state;
+        if let (Some(target), Filter::Held) = (target, filter) {
+            state.velocities[node] = (target - state.positions[node]) / step;
+            state.positions[node] = target;
+            continue;
+        }
+        let force = body.external_forces[node] - state.internal_forces[node];
+        let acceleration = force / state.masses[node] - state.velocities[node] * body.damping;
+        let mut velocity = acceleration.mul_add(half, state.velocities[node]);
+        if let Some(target) = target {
+            velocity = filter.merge(velocity, (target - state.positions[node]) / step);
+        }
+        state.velocities[node] = velocity;
+        state.positions[node] = velocity.mul_add(step, state.positions[node]);
     }
 }
 
@@ -86,12 +73,13 @@ fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive
 fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
     let half = T::from_f64(0.5 * dt);
     let damped = T::ONE / (T::ONE + half * body.damping);
-    let state = &mut body.state;
-    for node in 0..state.positions.len() {
-        if state.motions[node] == NodeMotion::Free {
+    for node in 0..body.state.positions.len() {
+        let filter = body.free_directions(node);
+        let state = &mut body.state;
+        if filter != Filter::Held {
             let force = body.external_forces[node] - state.internal_forces[node];
             let velocity = force.mul_add(half / state.masses[node], state.velocities[node]);
-            state.velocities[node] = velocity * damped;
+            state.velocities[node] = filter.merge(velocity * damped, state.velocities[node]);
         }
     }
 }

@@ -1,4 +1,8 @@
 //! How bodies move in time.
 
+mod drive;
 pub mod explicit;
+pub mod implicit;
 pub mod quasi_static;
+
+pub use drive::Drive;

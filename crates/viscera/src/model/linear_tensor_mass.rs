@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::tensor_mass::{EntityLoop, LinearEdge, LinearVertex, RestShape};
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -109,6 +109,11 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
         let Scratch { nodal, forces, .. } = scratch;
         self.add_stiffness_times(nodal, forces);
         scratch.finish(out);
+    }
+
+    fn add_blocks(&self, _x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.vertices.add_blocks(&scratch.nodal, sink);
+        self.edges.add_blocks(&scratch.nodal, sink);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

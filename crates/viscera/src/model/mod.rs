@@ -1,5 +1,6 @@
 //! Force models: how a law and a mesh become nodal forces. One model is one file or folder; `registry.rs` is the only list of them.
 
+mod block_sink;
 mod block_table;
 pub mod corotational;
 mod error;
@@ -13,6 +14,7 @@ mod tet_loop;
 pub mod total_lagrangian;
 pub mod volume_penalty;
 
+pub use block_sink::BlockSink;
 pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
@@ -41,7 +43,8 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 
     /// Prepares for products at `x` [m]: a model computes here, once, what all of them share, and keeps it in `scratch`.
-    /// Products and blocks up to the next call have to be at that `x`. Most models have nothing to prepare.
+    /// Products and blocks up to the next call have to be at that `x`, with the same cells. Most models have nothing to
+    /// prepare.
     fn linearize(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) {}
 
     /// How many numbers [`ForceModel::linearize`] keeps in the scratch.
@@ -51,6 +54,14 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>);
+
+    /// Forces for the energy–momentum step, where the model has them.
+    fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
+        None
+    }
 
     /// Stored energy W(x) [J].
     fn energy(&self, x: &[Vec3<T>]) -> f64;
@@ -74,6 +85,13 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// A copy, for snapshots: a cut changes the model.
     fn clone_box(&self) -> Box<dyn ForceModel<T>>;
+}
+
+/// Forces between two places that account for the energy between them.
+pub trait MeanForces<T> {
+    /// Adds the forces F [N] with (to − from)·F = W(to) − W(from) to `out`; they have neither net force nor torque about the
+    /// places in the middle.
+    fn add_mean_forces(&self, from: &[Vec3<T>], to: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 }
 
 /// Memory that models use while they compute and that means nothing between calls: nodal arrays, four numbers to a node,
@@ -108,6 +126,11 @@ impl<T: Scalar> Scratch<T> {
     /// Fills the places with `x` and clears the forces.
     pub(crate) fn start(&mut self, x: &[Vec3<T>]) {
         fill(&mut self.nodal, x);
+        self.clear_forces();
+    }
+
+    /// Clears the forces.
+    pub(crate) fn clear_forces(&mut self) {
         self.forces.fill([T::ZERO; 4]);
     }
 

@@ -1,6 +1,8 @@
 //! The only list of force models.
 
-use super::{Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian};
+use super::{
+    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 
 /// What a user should know about a model before choosing it.

@@ -4,8 +4,9 @@ use std::marker::PhantomData;
 
 use fearless_simd::{Simd, dispatch};
 
+use super::block_sink::{add_block_column, unit_displacement};
 use super::block_table::BlockTable;
-use super::{ModelError, Scratch};
+use super::{BlockSink, ModelError, Scratch};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, dispatch_level};
 use crate::mesh::{MeshError, TetMesh};
 
@@ -27,6 +28,13 @@ pub(crate) trait TetKernel: TetConstants {
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R>;
+    /// Whether [`TetKernel::mean_forces`] keeps energy.
+    const KEEPS_ENERGY: bool = false;
+    /// Forces between the edge matrices `from` and `to`; those in the middle, unless the kernel knows better.
+    #[inline(always)]
+    fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
+        Self::forces(constants, &((*from + *to) * from.columns[0].x.like(0.5)))
+    }
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
 }
@@ -172,6 +180,52 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
             let constants = load_constants::<T, S, K>(simd, constants);
             let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
             scatter_forces(simd, K::product(&constants[..K::CONSTANTS], &d, &dd), nodes, out);
+        }
+    }
+
+    pub(crate) fn add_mean_forces(
+        &self,
+        from: &[Vec3<T>],
+        to: &[Vec3<T>],
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) {
+        scratch.start(from);
+        scratch.start_direction(to);
+        let Scratch { nodal, direction, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_mean_forces_with(simd, nodal, direction, forces));
+        scratch.finish(out);
+    }
+
+    #[inline(always)]
+    fn add_mean_forces_with<S: Simd>(&self, simd: S, from: &[[T; 4]], to: &[[T; 4]], out: &mut [[T; 4]]) {
+        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let (from, to) = (gather_edges(simd, from, nodes), gather_edges(simd, to, nodes));
+            scatter_forces(simd, K::mean_forces(&constants[..K::CONSTANTS], &from, &to), nodes, out);
+        }
+    }
+
+    pub(crate) fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        scratch.start(x);
+        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+    }
+
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        for (block, (nodes, constants)) in self.corners.blocks().zip(self.constants.blocks()).enumerate() {
+            let constants = load_constants::<T, S, K>(simd, constants);
+            let d = gather_edges(simd, x, nodes);
+            for corner in 0..4 {
+                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 4]; 3];
+                for axis in 0..3 {
+                    let [a, b, c, d_corner] = unit_displacement::<T, S, 4>(simd, corner, axis);
+                    let dd = Mat3::from_columns(b - a, c - a, d_corner - a);
+                    let [f1, f2, f3] = K::product(&constants[..K::CONSTANTS], &d, &dd).columns;
+                    columns[axis] = [-(f1 + f2 + f3), f1, f2, f3];
+                }
+                add_block_column::<T, S, 4>(&columns, nodes, corner, self.corners.rows() - block * T::LANES, sink);
+            }
         }
     }
 

@@ -10,7 +10,7 @@
 
 use super::block_table::BlockTable;
 use super::tet_loop::{TetConstants, TetKernel, TetLoop};
-use super::{ForceModel, ModelError, Scratch};
+use super::{BlockSink, ForceModel, ModelError, Scratch};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 use crate::mesh::TetMesh;
 
@@ -93,6 +93,10 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.tets.add_product(x, dx, scratch, out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.tets.add_blocks(x, scratch, sink);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

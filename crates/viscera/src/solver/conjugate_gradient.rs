@@ -1,95 +1,213 @@
-//! Conjugate gradients with the diagonal as preconditioner: what needs no factorisation, for large bodies and for programs
-//! without one. A matrix that is not positive definite is noticed where a direction of the iteration meets a negative
-//! curvature, as it nearly always does; a factorisation is sure.
+//! The modified conjugate gradient: some directions of some nodes are prescribed, and stay so exactly.
 //!
-//! Source: Hestenes, Stiefel, Methods of conjugate gradients for solving linear systems (1952).
+//! With filters S and prescribed values z, it solves S (b − A x) = 0 among the x with (I − S) x = (I − S) z. It starts at
+//! x = S·guess + (I − S) z, and every residual and direction is filtered.
+//!
+//! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
+//! gradient method in cloth simulation (2003).
 
-use super::{LinearSolver, SolverError, SymmetricMatrix};
+use super::{BlockJacobi, Filter, LinearOperator};
+use crate::math::{Scalar, Vec3};
 
-/// Conjugate gradients on the assembled matrix.
+/// When the iteration ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// After this many iterations [≥ 1]: the same time for every step.
+    Iterations(u32),
+    /// When the residual, in the norm of the preconditioner, is below `relative` times that of b and A x at the start.
+    Tolerance {
+        /// Share [> 0, < 1].
+        relative: f64,
+        /// The most iterations [≥ 1].
+        at_most: u32,
+    },
+}
+
+impl Stop {
+    /// The most iterations.
+    pub fn at_most(self) -> u32 {
+        match self {
+            Self::Iterations(count) | Self::Tolerance { at_most: count, .. } => count,
+        }
+    }
+
+    /// Whether a solve that ended so did what was asked for.
+    pub fn accepts(self, ending: Ending) -> bool {
+        matches!(self, Self::Iterations(_)) || ending == Ending::Converged
+    }
+
+    fn relative(self) -> f64 {
+        match self {
+            Self::Iterations(_) => 0.0,
+            Self::Tolerance { relative, .. } => relative,
+        }
+    }
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// At the tolerance, or at a residual of zero.
+    Converged,
+    /// At the last iteration that was allowed.
+    Exhausted,
+    /// At a direction p along which the matrix is not positive, p·A p ≤ 0: tissue that buckles or softens. The solution
+    /// is that of the directions before, along which it was; if there was none, a step along p as long as the masses
+    /// alone allow.
+    NegativeCurvature,
+}
+
+/// What a solve did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveReport {
+    /// Products with the matrix, without the one at the start.
+    pub iterations: u32,
+    /// Residual at the end over its scale, in the norm of the preconditioner.
+    pub residual: f64,
+    /// How it ended.
+    pub ending: Ending,
+}
+
+/// Memory for solves of one size. Nothing is allocated later.
 #[derive(Clone, Debug)]
-pub struct ConjugateGradient {
-    /// Where to stop: residual over right-hand side, both in the norm of the preconditioner.
-    pub tolerance: f64,
-    /// The most iterations of a solve; 0 stands for ten times the number of unknowns.
-    pub iterations: usize,
-    inverse_diagonal: Vec<f64>,
-    residual: Vec<f64>,
-    direction: Vec<f64>,
-    product: Vec<f64>,
+pub struct ConjugateGradient<T> {
+    residual: Vec<Vec3<T>>,
+    direction: Vec<Vec3<T>>,
+    product: Vec<Vec3<T>>,
+    history: Vec<f64>,
 }
 
-impl ConjugateGradient {
-    /// A solver that stops at this relative residual [> 0].
-    pub fn new(tolerance: f64) -> Self {
-        let empty = Vec::new;
-        Self {
-            tolerance,
-            iterations: 0,
-            inverse_diagonal: empty(),
-            residual: empty(),
-            direction: empty(),
-            product: empty(),
-        }
-    }
+/// What a solve is about, apart from the matrix.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a, T> {
+    /// Right-hand side b.
+    pub rhs: &'a [Vec3<T>],
+    /// Filters S.
+    pub filters: &'a [Filter<T>],
+    /// Prescribed values z.
+    pub prescribed: &'a [Vec3<T>],
+    /// Preconditioner.
+    pub preconditioner: &'a BlockJacobi<T>,
+    /// A positive lower bound of the matrix, one number for each node: its part that comes from the masses.
+    pub masses: &'a [T],
 }
 
-/// A residual of 1e-12: what a factorisation would leave.
-impl Default for ConjugateGradient {
-    fn default() -> Self {
-        Self::new(1e-12)
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-impl LinearSolver for ConjugateGradient {
-    fn analyse(&mut self, matrix: &SymmetricMatrix) {
-        for vector in [&mut self.inverse_diagonal, &mut self.residual, &mut self.direction, &mut self.product] {
-            vector.clear();
-            vector.resize(matrix.size(), 0.0);
-        }
+impl<T: Scalar> ConjugateGradient<T> {
+    /// Memory for `nodes` nodes and up to `iterations` iterations.
+    pub fn new(nodes: usize, iterations: u32) -> Self {
+        let zeros = || vec![Vec3::ZERO; nodes];
+        let history = Vec::with_capacity(iterations as usize + 1);
+        Self { residual: zeros(), direction: zeros(), product: zeros(), history }
     }
 
-    fn factor(&mut self, matrix: &SymmetricMatrix) -> Result<(), SolverError> {
-        for (inverse, value) in self.inverse_diagonal.iter_mut().zip(matrix.diagonal()) {
-            if value.is_nan() || value <= 0.0 {
-                return Err(SolverError::NotPositiveDefinite);
+    /// Residuals of the last solve over their scale: at the start and after each iteration.
+    pub fn history(&self) -> &[f64] {
+        &self.history
+    }
+
+    /// Solves for `x`, which holds the guess. Iterations beyond those that memory was asked for are not made.
+    pub fn solve(
+        &mut self,
+        matrix: &mut impl LinearOperator<T>,
+        problem: &Problem<'_, T>,
+        stop: Stop,
+        x: &mut [Vec3<T>],
+    ) -> SolveReport {
+        let filters = problem.filters;
+        self.history.clear();
+        let scale = self.start(matrix, problem, x);
+        let mut rho = self.precondition(problem, None);
+        let goal = stop.relative() * scale;
+        self.note(rho, scale);
+        let mut ending = Ending::Exhausted;
+        let mut iterations = 0;
+        let at_most = stop.at_most().min((self.history.capacity() as u32).saturating_sub(1));
+        while iterations < at_most {
+            if rho.sqrt() <= goal || rho <= 0.0 {
+                ending = Ending::Converged;
+                break;
             }
-            *inverse = 1.0 / value;
-        }
-        Ok(())
-    }
-
-    fn solve(&mut self, matrix: &SymmetricMatrix, right: &mut [f64]) -> Result<(), SolverError> {
-        let Self { inverse_diagonal, residual, direction, product, .. } = self;
-        let limit = if self.iterations == 0 { 10 * matrix.size() } else { self.iterations };
-        residual.copy_from_slice(right);
-        right.fill(0.0);
-        let weight = |r: &[f64]| r.iter().zip(inverse_diagonal.iter()).map(|(r, d)| r * r * d).sum::<f64>();
-        direction.iter_mut().zip(residual.iter()).zip(inverse_diagonal.iter()).for_each(|((p, r), d)| *p = r * d);
-        let start = weight(residual);
-        let mut size = start;
-        for _ in 0..limit {
-            if size <= start * self.tolerance * self.tolerance {
-                return Ok(());
+            matrix.apply(&self.direction, &mut self.product);
+            for (product, filter) in self.product.iter_mut().zip(filters) {
+                *product = filter.apply(*product);
             }
-            matrix.multiply(direction, product);
-            let curvature = dot(direction, product);
+            iterations += 1;
+            let curvature = dot(&self.direction, &self.product);
             if curvature.is_nan() || curvature <= 0.0 {
-                return Err(SolverError::NotPositiveDefinite);
+                if iterations == 1 {
+                    self.step_against_masses(problem, rho, x);
+                }
+                ending = Ending::NegativeCurvature;
+                break;
             }
-            let length = size / curvature;
-            right.iter_mut().zip(direction.iter()).for_each(|(u, p)| *u += length * p);
-            residual.iter_mut().zip(product.iter()).for_each(|(r, q)| *r -= length * q);
-            let before = std::mem::replace(&mut size, weight(residual));
-            let turn = size / before;
-            for ((p, r), d) in direction.iter_mut().zip(residual.iter()).zip(inverse_diagonal.iter()) {
-                *p = r * d + turn * *p;
+            let length = T::from_f64(rho / curvature);
+            for node in 0..x.len() {
+                x[node] = self.direction[node].mul_add(length, x[node]);
+                self.residual[node] = self.product[node].mul_add(-length, self.residual[node]);
+            }
+            rho = self.precondition(problem, Some(rho));
+            self.note(rho, scale);
+        }
+        if ending == Ending::Exhausted && rho.sqrt() <= goal {
+            ending = Ending::Converged;
+        }
+        SolveReport { iterations, residual: self.history.last().copied().unwrap_or(0.0), ending }
+    }
+
+    /// Puts x to S·guess + (I − S) z and the residual to S (b − A x); gives the scale of residuals.
+    fn start(&mut self, matrix: &mut impl LinearOperator<T>, problem: &Problem<'_, T>, x: &mut [Vec3<T>]) -> f64 {
+        for node in 0..x.len() {
+            x[node] = problem.filters[node].merge(x[node], problem.prescribed[node]);
+        }
+        matrix.apply(x, &mut self.product);
+        let (mut of_rhs, mut of_product) = (0.0, 0.0);
+        for node in 0..x.len() {
+            let filter = &problem.filters[node];
+            let (rhs, product) = (filter.apply(problem.rhs[node]), filter.apply(self.product[node]));
+            of_rhs += rhs.dot(problem.preconditioner.apply(node, rhs)).to_f64();
+            of_product += product.dot(problem.preconditioner.apply(node, product)).to_f64();
+            self.residual[node] = rhs - product;
+        }
+        of_rhs.sqrt() + of_product.sqrt()
+    }
+
+    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r.
+    fn precondition(&mut self, problem: &Problem<'_, T>, before: Option<f64>) -> f64 {
+        let mut rho = 0.0;
+        for node in 0..self.residual.len() {
+            let residual = self.residual[node];
+            let corrected = problem.filters[node].apply(problem.preconditioner.apply(node, residual));
+            rho += residual.dot(corrected).to_f64();
+            self.product[node] = corrected;
+        }
+        let weight = T::from_f64(before.map_or(0.0, |before| rho / before));
+        for (direction, &corrected) in self.direction.iter_mut().zip(&self.product) {
+            *direction = match before {
+                Some(_) => direction.mul_add(weight, corrected),
+                None => corrected,
+            };
+        }
+        rho
+    }
+
+    /// x + p ρ/(p·M p): the step along the first direction if the masses were the whole matrix.
+    fn step_against_masses(&mut self, problem: &Problem<'_, T>, rho: f64, x: &mut [Vec3<T>]) {
+        let along = self.direction.iter().zip(problem.masses);
+        let inertia: f64 = along.map(|(p, &mass)| (p.squared_norm() * mass).to_f64()).sum();
+        if inertia > 0.0 {
+            let length = T::from_f64(rho / inertia);
+            for (x, &direction) in x.iter_mut().zip(&self.direction) {
+                *x = direction.mul_add(length, *x);
             }
         }
-        Err(SolverError::NotConverged { residual: (size / start).sqrt(), iterations: limit })
     }
+
+    fn note(&mut self, rho: f64, scale: f64) {
+        self.history.push(if scale > 0.0 { rho.max(0.0).sqrt() / scale } else { 0.0 });
+    }
+}
+
+/// a·b over all nodes, added up in double precision in the order of the nodes.
+pub(crate) fn dot<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
+    a.iter().zip(b).map(|(&a, &b)| a.dot(b).to_f64()).sum()
 }

@@ -1,51 +1,27 @@
-//! Linear systems: sparse symmetric matrices, how they are assembled, and what solves them.
+//! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient, and the seam to
+//! factorisations.
 
-mod assembly;
+mod block_jacobi;
+mod block_matrix;
 mod conjugate_gradient;
-mod symmetric_matrix;
+mod filter;
+mod iterative;
+mod linear_solver;
+mod system;
 
-pub use assembly::{Assembly, neighbours};
-pub use conjugate_gradient::ConjugateGradient;
-pub use symmetric_matrix::SymmetricMatrix;
+pub use block_jacobi::BlockJacobi;
+pub use block_matrix::BlockMatrix;
+pub(crate) use conjugate_gradient::dot;
+pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, Stop};
+pub use filter::Filter;
+pub use iterative::Iterative;
+pub use linear_solver::{LinearSolver, SolverError};
+pub use system::System;
 
-/// Something that solves K u = f for a sparse symmetric positive definite K.
-///
-/// The engine has [`ConjugateGradient`]; a sparse Cholesky factorisation is in the crate `viscera-direct`, apart because it
-/// takes long to compile.
-pub trait LinearSolver {
-    /// Looks at which entries there are: once for all matrices that share them.
-    fn analyse(&mut self, matrix: &SymmetricMatrix);
+use crate::math::{Scalar, Vec3};
 
-    /// Looks at the values.
-    ///
-    /// # Errors
-    /// [`SolverError::NotPositiveDefinite`].
-    fn factor(&mut self, matrix: &SymmetricMatrix) -> Result<(), SolverError>;
-
-    /// Replaces the right-hand side by the solution, for the matrix that was factored last.
-    ///
-    /// # Errors
-    /// [`SolverError`].
-    fn solve(&mut self, matrix: &SymmetricMatrix, right: &mut [f64]) -> Result<(), SolverError>;
-}
-
-/// Why a system is not solved.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SolverError {
-    /// There is a direction in which the matrix does not resist.
-    #[error("the stiffness matrix is not positive definite: the body is unstable, or nothing holds it")]
-    NotPositiveDefinite,
-    /// There is no memory for the factors.
-    #[error("the factors of the stiffness matrix do not fit into memory; take conjugate gradients, or fewer cells")]
-    OutOfMemory,
-    /// The iteration did not come to an end.
-    #[error(
-        "conjugate gradients left a residual of {residual:.1e} after {iterations} iterations; allow more, or take a factorisation"
-    )]
-    NotConverged {
-        /// Residual relative to the right-hand side.
-        residual: f64,
-        /// Iterations made.
-        iterations: usize,
-    },
+/// A symmetric matrix that is known by what it does to a vector.
+pub trait LinearOperator<T: Scalar> {
+    /// Writes A x to `out`.
+    fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]);
 }

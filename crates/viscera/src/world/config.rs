@@ -1,6 +1,7 @@
 use super::step::MAX_SUBSTEPS;
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
+use crate::dynamics::implicit::{Implicit, Newton, Scheme};
 use crate::math::Scalar;
 
 /// Settings of a world.
@@ -10,8 +11,23 @@ pub struct WorldConfig {
     pub gravity: [f64; 3],
     /// Time that [`World::step`] advances [s, > 0]; 5 ms by default, 200 pictures per second.
     pub step: f64,
-    /// How a step is divided.
-    pub substep: Substep,
+    /// How bodies move in a step.
+    pub integrator: Integrator,
+}
+
+/// How bodies move in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// By central differences, in as many sub-steps as that takes: cheap where the tissue is soft or its cells are large.
+    Explicit(Substep),
+    /// By one step that the forces at its end decide: stiff tissue and small cells bear long steps.
+    Implicit(Implicit),
+}
+
+impl Default for Integrator {
+    fn default() -> Self {
+        Self::Explicit(Substep::Automatic)
+    }
 }
 
 /// How a step is divided into sub-steps of the explicit scheme.
@@ -27,7 +43,7 @@ pub enum Substep {
 
 impl Default for WorldConfig {
     fn default() -> Self {
-        Self { gravity: [0.0, -9.81, 0.0], step: 5e-3, substep: Substep::Automatic }
+        Self { gravity: [0.0, -9.81, 0.0], step: 5e-3, integrator: Integrator::default() }
     }
 }
 
@@ -40,25 +56,44 @@ impl WorldConfig {
         if !(self.step.is_finite() && self.step > 0.0) {
             return out_of_range("step", self.step, "positive [s]");
         }
-        match self.substep {
-            Substep::Fixed(value) if !(value.is_finite() && value > 0.0) => {
+        match self.integrator {
+            Integrator::Explicit(Substep::Fixed(value)) if !(value.is_finite() && value > 0.0) => {
                 out_of_range("substep", value, "positive [s]")
             }
-            Substep::Fixed(value) if self.step / value > MAX_SUBSTEPS => {
+            Integrator::Explicit(Substep::Fixed(value)) if self.step / value > MAX_SUBSTEPS => {
                 out_of_range("substep", value, "at least a hundred-thousandth of the step [s]")
             }
-            _ => Ok(()),
+            Integrator::Implicit(settings) => match settings.first_out_of_range() {
+                Some((name, value, range)) => out_of_range(name, value, range),
+                None if settings.scheme == Scheme::EnergyMomentum && settings.newton == Newton::Linearised => {
+                    Err(WorldError::LinearisedEnergyMomentum)
+                }
+                None => Ok(()),
+            },
+            Integrator::Explicit(_) => Ok(()),
         }
     }
 }
 
 impl<T: Scalar> World<T> {
-    /// Refuses a fixed sub-step at which the body would blow up.
-    pub(super) fn check_substep(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
-        let stable = body.stable_step();
-        match self.config.substep {
-            Substep::Fixed(substep) if substep > stable => {
+    /// Refuses a body that the integrator cannot move: one that would blow up at the fixed sub-step, or that lacks what the
+    /// scheme needs, or has what it does not know.
+    pub(super) fn check_integrator(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
+        match self.config.integrator {
+            Integrator::Explicit(_) if body.stiffness_damping > T::ZERO => {
+                Err(WorldError::StiffnessDampingNeedsImplicit { body: body.name().into() })
+            }
+            Integrator::Explicit(Substep::Fixed(substep)) if substep > body.stable_step() => {
+                let stable = body.stable_step();
                 Err(WorldError::UnstableSubstep { body: body.name().into(), substep, stable })
+            }
+            Integrator::Implicit(settings) if settings.scheme.needs_mean_forces() => {
+                match body.state.models.iter().find(|model| model.mean_forces().is_none()) {
+                    Some(model) => {
+                        Err(WorldError::NoMeanForces { body: body.name().into(), model: model.name(), law: body.law() })
+                    }
+                    None => Ok(()),
+                }
             }
             _ => Ok(()),
         }

@@ -26,6 +26,30 @@ pub enum WorldError {
         /// What would do [s].
         stable: f64,
     },
+    /// Explicit steps know no damping of the stiffness: it would cost them their long steps.
+    #[error(
+        "body `{body}` has stiffness damping, which explicit steps do not know; take an implicit integrator, or damping by mass"
+    )]
+    StiffnessDampingNeedsImplicit {
+        /// Name of the body.
+        body: String,
+    },
+    /// The energy–momentum scheme needs a model that knows its forces between two places.
+    #[error(
+        "body `{body}`: the energy-momentum scheme does not work with the model `{model}` of the law `{law}`; take \
+         `total-lagrangian` tetrahedra of St Venant-Kirchhoff tissue without `keep-volume`, or another scheme"
+    )]
+    NoMeanForces {
+        /// Name of the body.
+        body: String,
+        /// Name of the model.
+        model: &'static str,
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// What the energy–momentum scheme keeps, it keeps only if its equations are solved in full.
+    #[error("the energy-momentum scheme keeps nothing when it is linearised: solve it in full, or take another scheme")]
+    LinearisedEnergyMomentum,
     /// A cell that the body does not have.
     #[error("body `{body}` has no cell {cell}: its cells are numbered 0 to {}", cells - 1)]
     MissingCell {
@@ -87,6 +111,24 @@ pub enum StepError {
         substeps: f64,
         /// Length of the step [s].
         step: f64,
+    },
+    /// The equations of an implicit step were not solved in the iterations that were allowed.
+    #[error(
+        "at {time:.4} s the step of body `{body}` ({law}) does not converge: after {iterations} iterations of Newton's \
+         method {residual:.1e} of its forces are left; the step is undone. Take a shorter step, more iterations (of the \
+         linear solver too), or the linearised step"
+    )]
+    NotConverged {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Name of the law.
+        law: &'static str,
+        /// Iterations of Newton's method.
+        iterations: u32,
+        /// What is left of the forces, over those that balance.
+        residual: f64,
     },
     /// The fixed sub-step has stopped being stable.
     #[error(

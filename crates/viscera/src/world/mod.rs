@@ -6,14 +6,16 @@ mod observables;
 mod snapshot;
 mod statics;
 mod step;
+mod step_implicit;
 
-pub use config::{Substep, WorldConfig};
+pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
 pub use observables::{BodyObservables, InstrumentObservables};
 pub use snapshot::Snapshot;
 pub use step::StepReport;
 
 use crate::body::{Body, SimulatedBody};
+use crate::dynamics::implicit::ImplicitMemory;
 use crate::instrument::Instrument;
 use crate::math::{Scalar, Vec3};
 use crate::model::Precision;
@@ -30,6 +32,8 @@ pub struct InstrumentId(pub usize);
 pub struct World<T: Scalar> {
     config: WorldConfig,
     bodies: Vec<SimulatedBody<T>>,
+    /// Memory of implicit steps, one for each body; none if the world moves explicitly.
+    implicit: Vec<ImplicitMemory<T>>,
     instruments: Vec<Box<dyn Instrument<T>>>,
     /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
     steps: u64,
@@ -49,6 +53,7 @@ impl<T: Scalar> World<T> {
         Ok(Self {
             config,
             bodies: Vec::new(),
+            implicit: Vec::new(),
             instruments: Vec::new(),
             steps: 0,
             tips: Vec::new(),
@@ -60,13 +65,20 @@ impl<T: Scalar> World<T> {
     ///
     /// # Errors
     /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
-    /// at the fixed sub-step that was asked for, with the number that would do.
+    /// at the fixed sub-step that was asked for, with the number that would do; [`WorldError::NoMeanForces`] and
+    /// [`WorldError::StiffnessDampingNeedsImplicit`] where it does not fit the integrator.
     pub fn add(&mut self, body: Body) -> Result<BodyId, WorldError>
     where
         T: Precision,
     {
-        let body = SimulatedBody::new(body)?;
-        self.check_substep(&body)?;
+        let mut body = SimulatedBody::new(body)?;
+        self.check_integrator(&body)?;
+        if let Integrator::Implicit(settings) = self.config.integrator {
+            if settings.scheme.needs_past() {
+                body.reserve_past();
+            }
+            self.implicit.push(ImplicitMemory::new(body.mesh(), body.state.rings(), &settings));
+        }
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
         self.bodies.push(body);
@@ -107,6 +119,11 @@ impl<T: Scalar> World<T> {
     /// A body of this world. Panics for a number of another world.
     pub fn body(&self, id: BodyId) -> &SimulatedBody<T> {
         &self.bodies[id.0]
+    }
+
+    /// How the equations of a body were solved in the last implicit step; none if the world moves explicitly.
+    pub fn implicit_memory(&self, id: BodyId) -> Option<&ImplicitMemory<T>> {
+        self.implicit.get(id.0)
     }
 
     /// A body of this world, to be changed. Panics for a number of another world.

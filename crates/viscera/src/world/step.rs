@@ -1,8 +1,9 @@
 //! One step of a world.
 
-use super::{StepError, Substep, World};
+use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
-use crate::dynamics::explicit::{self, Drive};
+use crate::dynamics::implicit::ImplicitReport;
+use crate::dynamics::{Drive, explicit};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 
@@ -16,12 +17,22 @@ const MAX_RETRIES: u32 = 5;
 pub struct StepReport {
     /// Time at the end [s].
     pub time: f64,
-    /// Sub-steps taken.
+    /// Sub-steps taken; 1 for an implicit step.
     pub substeps: u32,
     /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,
+    /// What the solver did, in an implicit step.
+    pub implicit: Option<ImplicitReport>,
+}
+
+/// What moving the bodies over a step took.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) substeps: u32,
+    pub(super) retries: u32,
+    pub(super) implicit: Option<ImplicitReport>,
 }
 
 impl<T: Scalar> World<T> {
@@ -32,10 +43,10 @@ impl<T: Scalar> World<T> {
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
         self.keep();
-        let (substeps, retries) = self.move_bodies(&span).inspect_err(|_| self.undo())?;
+        let Motion { substeps, retries, implicit } = self.move_bodies(&span).inspect_err(|_| self.undo())?;
         let removed_cells = self.cut(&span);
         self.steps += 1;
-        Ok(StepReport { time: span.to, substeps, retries, removed_cells })
+        Ok(StepReport { time: span.to, substeps, retries, removed_cells, implicit })
     }
 
     /// Remembers where everything is.
@@ -46,18 +57,26 @@ impl<T: Scalar> World<T> {
     }
 
     /// Puts everything back to where it was.
-    fn undo(&mut self) {
+    pub(super) fn undo(&mut self) {
         for body in &mut self.bodies {
             body.backup.put_back(&mut body.state);
         }
         self.move_tips(self.time());
     }
 
-    /// Moves the bodies over the step with as many sub-steps as it takes; gives these, and how often it was tried again.
-    fn move_bodies(&mut self, span: &Span) -> Result<(u32, u32), StepError> {
+    /// Moves the bodies over the step.
+    fn move_bodies(&mut self, span: &Span) -> Result<Motion, StepError> {
+        match self.config.integrator {
+            Integrator::Explicit(substep) => self.move_explicitly(span, substep),
+            Integrator::Implicit(settings) => self.move_implicitly(span, &settings),
+        }
+    }
+
+    /// Moves the bodies with as many sub-steps as it takes.
+    fn move_explicitly(&mut self, span: &Span, substep: Substep) -> Result<Motion, StepError> {
         let mut fastest = self.fastest();
         for retries in 0..=MAX_RETRIES {
-            let substeps = match self.plan_substeps(fastest) {
+            let substeps = match self.plan_substeps(substep, fastest) {
                 // What an attempt that ran away says of stiffness means nothing.
                 Err(StepError::TooStiff { .. }) if retries > 0 => return Err(self.diverged()),
                 plan => plan?,
@@ -67,7 +86,7 @@ impl<T: Scalar> World<T> {
             let finite = self.bodies.iter().all(|body| body.state.is_finite());
             let at_end = if finite { self.fastest() } else { fastest };
             if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(at_end.squared_frequency) {
-                return Ok((substeps, retries));
+                return Ok(Motion { substeps, retries, implicit: None });
             }
             // The tissue stiffened on the way: once more, for the stiffness at its end, or else for twice as many steps.
             if !finite {
@@ -92,9 +111,9 @@ impl<T: Scalar> World<T> {
         fastest
     }
 
-    fn plan_substeps(&self, fastest: Fastest) -> Result<u32, StepError> {
+    fn plan_substeps(&self, substep: Substep, fastest: Fastest) -> Result<u32, StepError> {
         let step = self.config.step;
-        let needed = match self.config.substep {
+        let needed = match substep {
             Substep::Automatic => explicit::substeps_for(step, fastest.squared_frequency),
             Substep::Fixed(substep) => {
                 let stable = explicit::stable_step(fastest.squared_frequency);
@@ -115,7 +134,7 @@ impl<T: Scalar> World<T> {
     }
 
     /// Lets instruments take hold or let go.
-    fn grip(&mut self, span: &Span) {
+    pub(super) fn grip(&mut self, span: &Span) {
         for (number, instrument) in self.instruments.iter().enumerate() {
             instrument.grip(number as u32, span, &mut self.bodies);
         }
@@ -161,7 +180,7 @@ impl<T: Scalar> World<T> {
         removed
     }
 
-    fn diverged(&self) -> StepError {
+    pub(super) fn diverged(&self) -> StepError {
         let deformed = self.bodies.iter().map(|body| (body, most_deformed_cell(body)));
         let (body, (cell, stretch)) =
             deformed.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1)).expect("a world without bodies never diverges");

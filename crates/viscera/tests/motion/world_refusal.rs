@@ -4,7 +4,7 @@ use viscera::body::{Body, Load};
 use viscera::curve::Curve;
 use viscera::mesh::{HexMesh, TetMesh};
 use viscera::model::{Precision, TensorMass, TotalLagrangian};
-use viscera::world::{StepError, Substep, World, WorldConfig, WorldError};
+use viscera::world::{Integrator, StepError, Substep, World, WorldConfig, WorldError};
 
 use crate::support::{DENSITY, Vector, bits, free_bar, in_both_precisions, linear, side, stvk, world};
 
@@ -53,7 +53,7 @@ in_both_precisions!(a_load_far_too_strong_is_refused_and_undone, f32: 1e30, f64:
 /// Tissue that stiffens beyond a fixed sub-step is told the one that would do, at the step where it happens.
 #[test]
 fn a_fixed_sub_step_that_stops_being_stable_is_refused() {
-    let config = WorldConfig { gravity: [0.0; 3], step: 2e-3, substep: Substep::Fixed(1e-3) };
+    let config = WorldConfig { gravity: [0.0; 3], step: 2e-3, integrator: Integrator::Explicit(Substep::Fixed(1e-3)) };
     let mut world = World::<f64>::new(config).unwrap();
     let stretch = Curve::piecewise_linear(vec![(0.0, Vector::ZERO), (1.0, Vector::new(0.0, 0.0, 0.64))]).unwrap();
     let body = free_bar().name("bar").fix(side("z-min")).prescribe(side("z-max"), stretch).damping(50.0);
@@ -73,7 +73,7 @@ fn a_fixed_sub_step_that_stops_being_stable_is_refused() {
 /// The body that a refusal names is the one that is too fast, not one that is merely deformed more.
 #[test]
 fn the_refusal_names_the_body_that_is_too_fast() {
-    let config = WorldConfig { gravity: [0.0; 3], step: 2e-3, substep: Substep::Fixed(1e-3) };
+    let config = WorldConfig { gravity: [0.0; 3], step: 2e-3, integrator: Integrator::Explicit(Substep::Fixed(1e-3)) };
     let mut world = World::<f64>::new(config).unwrap();
     let soft = world
         .add(
@@ -93,7 +93,7 @@ fn the_refusal_names_the_body_that_is_too_fast() {
 #[test]
 fn an_empty_world_only_lets_time_pass() {
     for substep in [Substep::Automatic, Substep::Fixed(1e-3)] {
-        let config = WorldConfig { step: 1.0, substep, ..WorldConfig::default() };
+        let config = WorldConfig { step: 1.0, integrator: Integrator::Explicit(substep), ..WorldConfig::default() };
         let mut world = World::<f64>::new(config).unwrap();
         world.step().unwrap();
         assert_eq!(world.time(), 1.0);
@@ -104,7 +104,8 @@ fn an_empty_world_only_lets_time_pass() {
 /// step that blames the tissue for them.
 #[test]
 fn a_sub_step_that_divides_a_step_too_finely_is_refused() {
-    let config = WorldConfig { step: 1.0, substep: Substep::Fixed(1e-9), ..WorldConfig::default() };
+    let config =
+        WorldConfig { step: 1.0, integrator: Integrator::Explicit(Substep::Fixed(1e-9)), ..WorldConfig::default() };
     let Err(WorldError::OutOfRange { name, value, .. }) = World::<f64>::new(config).map(|_| ()) else { panic!() };
     assert_eq!((name, value), ("substep", 1e-9));
 }

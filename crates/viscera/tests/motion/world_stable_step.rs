@@ -1,13 +1,13 @@
 //! The longest stable sub-step: bounded from the safe side, refused beyond, and the bound is no idle caution.
 
 use viscera::body::Body;
-use viscera::dynamics::explicit::{self, Drive};
+use viscera::dynamics::{Drive, explicit};
 use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
 use viscera::model::frequency::frequency_bound;
 use viscera::model::{Scratch, TotalLagrangian};
-use viscera::world::{BodyId, Substep, World, WorldConfig, WorldError};
+use viscera::world::{BodyId, Integrator, Substep, World, WorldConfig, WorldError};
 
 use crate::support::{DENSITY, Vector, assert_relative, linear, side, stvk};
 
@@ -122,7 +122,11 @@ fn the_sub_step_that_a_refusal_names_works() {
             .model(TotalLagrangian::new(stvk(5e3, 0.4)))
             .fix(side("z-min"))
     };
-    let config = |substep| WorldConfig { gravity: [0.0; 3], step: 5e-3, substep: Substep::Fixed(substep) };
+    let config = |substep| WorldConfig {
+        gravity: [0.0; 3],
+        step: 5e-3,
+        integrator: Integrator::Explicit(Substep::Fixed(substep)),
+    };
     let mut too_long = World::<f64>::new(config(5e-3)).unwrap();
     let error = too_long.add(bar()).unwrap_err();
     let WorldError::UnstableSubstep { body, substep, stable } = &error else { panic!("{error}") };
@@ -144,7 +148,8 @@ fn the_sub_step_that_a_refusal_names_works() {
 /// A step is divided evenly into sub-steps no longer than the fixed one.
 #[test]
 fn fixed_sub_steps_divide_the_step() {
-    let config = WorldConfig { gravity: [0.0; 3], step: 5e-3, substep: Substep::Fixed(0.9e-3) };
+    let config =
+        WorldConfig { gravity: [0.0; 3], step: 5e-3, integrator: Integrator::Explicit(Substep::Fixed(0.9e-3)) };
     let mut world = World::<f64>::new(config).unwrap();
     let mesh = TetMesh::box_grid([1, 1, 2], [0.04, 0.04, 0.08]);
     world.add(Body::new(mesh, DENSITY).model(TotalLagrangian::new(linear(1e3, 0.3)))).unwrap();

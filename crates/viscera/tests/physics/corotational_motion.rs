@@ -5,7 +5,7 @@ use viscera::material::{LinearElastic, Tissue};
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
 use viscera::model::Corotational;
 use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement};
-use viscera::world::{BodyId, Substep, World, WorldConfig};
+use viscera::world::{BodyId, Integrator, Substep, World, WorldConfig};
 
 use crate::support::Vector;
 
@@ -27,7 +27,7 @@ fn bar(mesh: impl Into<VolumeMesh>, recipe: Corotational) -> (World<f64>, BodyId
 /// Largest error of the energy over a second, relative to what a stretch by a third stores at first; and the sub-steps
 /// of a step.
 fn energy_error(rotation: Rotation, substep: Substep) -> (f64, u32) {
-    let config = WorldConfig { gravity: [0.0; 3], step: 0.01, substep };
+    let config = WorldConfig { gravity: [0.0; 3], step: 0.01, integrator: Integrator::Explicit(substep) };
     let mut world = World::<f64>::new(config).unwrap();
     let recipe = recipe(rotation, Default::default(), Default::default());
     let id = world.add(Body::new(TetMesh::box_grid([1, 1, 4], SIZE), 1000.0).model(recipe)).unwrap();

@@ -11,6 +11,7 @@ mod law_rest;
 mod law_symmetry;
 mod math;
 mod model_adaptive;
+mod model_assembly;
 mod model_balance;
 mod model_equality;
 mod model_gradient;

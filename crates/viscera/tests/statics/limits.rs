@@ -6,7 +6,7 @@ use viscera::dynamics::quasi_static::{QuasiStatic, StaticError};
 use viscera::material::{LawFamily, LinearElastic, NeoHookean, StVenantKirchhoff, StableNeoHookean, Tissue};
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::TotalLagrangian;
-use viscera::solver::ConjugateGradient;
+use viscera::solver::Iterative;
 
 use crate::reference::{Vector, assert_displaced, bottom, displacements, mesh, settle, world};
 
@@ -60,7 +60,7 @@ fn small_loads_bend_the_beam_alike_under_every_law() {
     let law = StableNeoHookean::from_young_poisson(10e3, 0.3).unwrap();
     let (mut small, id) = world(beam(law), gravity);
     let settings = QuasiStatic { small_strain: true, ..QuasiStatic::default() };
-    small.settle(id, &settings, &mut ConjugateGradient::new(1e-13)).unwrap();
+    small.settle(id, &settings, &mut Iterative::new(1e-13)).unwrap();
     assert_displaced(&displacements(&small, id), &expected, 1e-9, "small strain");
 }
 
@@ -82,7 +82,7 @@ fn prescribed_displacements_are_reached_and_undone() {
     assert!(seen.reaction.norm() < 1e-10 && seen.elastic_energy > 0.0, "{seen:?}");
 
     let settings = QuasiStatic { tolerance: 1e-12, ..QuasiStatic::default() };
-    settings.solve(world.body_mut(id), [0.0; 3], 1.0, &mut ConjugateGradient::new(1e-13)).unwrap();
+    settings.solve(world.body_mut(id), [0.0; 3], 1.0, &mut Iterative::new(1e-13)).unwrap();
     let left = displacements(&world, id).iter().map(|u| u.norm()).fold(0.0, f64::max);
     assert!(left <= 1e-12 * 0.01, "{left:e} m from rest");
 }
@@ -100,7 +100,7 @@ fn scrambled_nodes_come_back_to_rest() {
         .set_positions(|x| x + Vector::new(throw(x.x, x.y, x.z), throw(x.z, x.x, x.y), throw(x.y, x.z, x.x)));
     assert!(world.observe(id).inverted_cells > 20, "{}", world.observe(id).inverted_cells);
     let settings = QuasiStatic { iterations: 200, ..QuasiStatic::default() };
-    world.settle(id, &settings, &mut ConjugateGradient::default()).unwrap();
+    world.settle(id, &settings, &mut Iterative::default()).unwrap();
     let left = displacements(&world, id).iter().map(|u| u.norm()).fold(0.0, f64::max);
     assert!(left <= 1e-9, "{left:e} m from rest");
 }
@@ -117,7 +117,7 @@ fn a_pressure_on_the_end_is_balanced_by_the_reaction() {
         .load(Load::Pressure { region: top, pressure: Curve::constant(100.0) });
     let (mut world, id) = world(body, [0.0; 3]);
     let settings = QuasiStatic { tolerance: 1e-10, iterations: 100, ..QuasiStatic::default() };
-    world.settle(id, &settings, &mut ConjugateGradient::new(1e-13)).unwrap();
+    world.settle(id, &settings, &mut Iterative::new(1e-13)).unwrap();
     let shortened = -displacements(&world, id).iter().map(|u| u.z).fold(0.0, f64::min);
     // 1 % of strain; the glued bottom stiffens it a little
     assert!((0.9..1.05).contains(&(shortened / (0.04 * 100.0 / 10e3))), "{shortened} m");
@@ -135,6 +135,6 @@ fn what_cannot_be_solved_is_refused() {
     let expected = "nothing holds body `beam`: fix or prescribe some of its nodes; a free body has no equilibrium";
     assert_eq!(message, expected);
     let settings = QuasiStatic { tolerance: f64::NAN, ..QuasiStatic::default() };
-    let message = world.settle(id, &settings, &mut ConjugateGradient::default()).unwrap_err().to_string();
+    let message = world.settle(id, &settings, &mut Iterative::default()).unwrap_err().to_string();
     assert_eq!(message, "tolerance = NaN is out of range: it must be positive");
 }

@@ -1,6 +1,7 @@
 //! Equilibria: against discrete solutions that other programs computed on the same meshes, and at the limit of what a law
 //! can bear.
 
+mod guides;
 mod limits;
 mod locking;
 mod reference;

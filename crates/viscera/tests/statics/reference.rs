@@ -6,7 +6,7 @@ use viscera::curve::Curve;
 use viscera::dynamics::quasi_static::{QuasiStatic, StaticError, StaticReport};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
-use viscera::solver::ConjugateGradient;
+use viscera::solver::Iterative;
 use viscera::world::{BodyId, World, WorldConfig};
 
 pub(crate) type Vector = Vec3<f64>;
@@ -74,7 +74,7 @@ pub(crate) fn world(body: Body, gravity: [f64; 3]) -> (World<f64>, BodyId) {
 /// Brings it to rest, far below the tolerance of the references.
 pub(crate) fn settle(world: &mut World<f64>, id: BodyId) -> Result<StaticReport, StaticError> {
     let settings = QuasiStatic { tolerance: 1e-12, ..QuasiStatic::default() };
-    world.settle(id, &settings, &mut ConjugateGradient::new(1e-13))
+    world.settle(id, &settings, &mut Iterative::new(1e-13))
 }
 
 /// Displacements from rest.

@@ -1,7 +1,8 @@
 use super::{LoadStep, StaticError, StaticFailure, StaticReport};
 use crate::body::{NodeMotion, SimulatedBody};
-use crate::math::{Scalar, Vec3};
-use crate::solver::{Assembly, LinearSolver, SolverError, SymmetricMatrix, neighbours};
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::BlockSink;
+use crate::solver::{BlockMatrix, LinearOperator, LinearSolver, SolverError, System, dot};
 
 /// Shares of the mean diagonal by which a stiffness that is not positive definite is shifted, one after the other.
 const SHIFTS: [f64; 9] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 100.0];
@@ -16,11 +17,10 @@ pub(super) struct Equilibrium<'a, T: Scalar> {
     solver: &'a mut dyn LinearSolver,
     gravity: Vec3<T>,
     time: f64,
-    assembly: Assembly,
-    matrix: SymmetricMatrix,
-    /// Whether the matrix had to be shifted when it was last solved with.
+    /// The stiffness, and the directions that are free.
+    system: System,
+    /// Whether the stiffness had to be shifted when it was last solved with.
     shifted: bool,
-    free: Vec<bool>,
     start: Vec<Vec3<T>>,
     start_forces: Vec<Vec3<T>>,
     targets: Vec<Vec3<T>>,
@@ -35,22 +35,20 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     ) -> Result<Self, StaticError> {
         body.update_internal_forces();
         let state = &body.state;
-        let free: Vec<bool> = state.motions.iter().map(|&motion| motion == NodeMotion::Free).collect();
         if !state.motions.iter().any(|motion| !matches!(motion, NodeMotion::Free | NodeMotion::Retired)) {
             return Err(StaticError::NothingHolds { body: body.name.clone() });
         }
-        let target = |(node, motion): (usize, &NodeMotion)| match motion {
-            NodeMotion::Prescribed(curve) => body.rest[node] + body.prescribed[*curve as usize].at(time).cast(),
+        let target = |(node, motion): (usize, &NodeMotion)| match *motion {
+            NodeMotion::Prescribed(curve) => body.rest[node] + body.prescribed[curve as usize].at(time).cast(),
+            NodeMotion::Guided(guide) => body.rest[node] + body.guides.displacement(guide, time).cast(),
             _ => state.positions[node],
         };
         let targets = state.motions.iter().enumerate().map(target).collect();
-        let rings = state.models.iter().map(|model| model.rings()).max().unwrap_or(1);
-        let masks: Vec<[bool; 3]> = free.iter().map(|&free| [free; 3]).collect();
-        let assembly = Assembly::new(neighbours(&body.mesh, rings), &masks);
-        let matrix = assembly.matrix();
-        solver.analyse(&matrix);
+        let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
+        let system = System { matrix: BlockMatrix::new(&body.mesh, state.rings()), filters };
+        solver.analyse(&system);
         let (start, start_forces) = (state.positions.clone(), state.internal_forces.clone());
-        Ok(Self { body, solver, gravity, time, assembly, matrix, shifted: false, free, start, start_forces, targets })
+        Ok(Self { body, solver, gravity, time, system, shifted: false, start, start_forces, targets })
     }
 
     /// Goes to a share of the load; gives the residuals. Where that fails, the body is as it was before.
@@ -72,7 +70,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
             if residuals.len() > limit || !reached.is_finite() {
                 return Err(StaticFailure::TooManyIterations { residual: reached, iterations: residuals.len() - 1 });
             }
-            let step = self.descend(&residual).map_err(StaticFailure::Solver)?;
+            let step = self.descend(&residual, share).map_err(StaticFailure::Solver)?;
             if reached <= self.rounding() / scale {
                 break;
             }
@@ -95,28 +93,26 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         }
     }
 
-    /// What is left of the loads at the free components, f_ext − f_int, besides the loads themselves and the size of
-    /// loads and reactions.
-    fn residual(&mut self, share: f64) -> (Vec<Vec3<T>>, Vec<f64>, f64) {
+    /// What is left of the loads in the free directions, f_ext − f_int, besides the loads themselves and the size of loads
+    /// and reactions.
+    fn residual(&mut self, share: f64) -> (Vec<Vec3<T>>, Vec<Vec3<f64>>, f64) {
         let body = &mut *self.body;
         body.state.positions_changed();
         body.update_internal_forces();
         body.update_external_forces(self.time, self.gravity);
         let (share, rest) = (T::from_f64(share), T::from_f64(1.0 - share));
-        let loads: Vec<Vec3<T>> = (0..self.free.len())
+        let loads: Vec<Vec3<T>> = (0..self.start.len())
             .map(|node| self.start_forces[node] * rest + body.external_forces[node] * share)
             .collect();
-        let left: Vec<Vec3<T>> = loads.iter().zip(&body.state.internal_forces).map(|(&f, &i)| f - i).collect();
         let (mut applied, mut reaction) = (0.0, 0.0);
-        for (node, &free) in self.free.iter().enumerate() {
-            if free {
-                applied += loads[node].cast::<f64>().squared_norm();
-            } else {
-                reaction += left[node].cast::<f64>().squared_norm();
-            }
+        let mut residual = Vec::with_capacity(loads.len());
+        for (node, filter) in self.system.filters.iter().enumerate() {
+            let left = (loads[node] - body.state.internal_forces[node]).cast::<f64>();
+            let free = filter.apply(left);
+            applied += filter.apply(loads[node].cast()).squared_norm();
+            reaction += (left - free).squared_norm();
+            residual.push(free);
         }
-        let mut residual = vec![0.0; self.matrix.size()];
-        self.assembly.gather(&left, &mut residual);
         let scale = f64::max(applied, reaction).sqrt();
         let scale = if scale > 0.0 { scale } else { norm(&residual).max(f64::MIN_POSITIVE) };
         (loads, residual, scale)
@@ -124,35 +120,39 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
 
     /// Residual that the rounding of positions explains [N].
     fn rounding(&self) -> f64 {
-        let stiffness = self.matrix.diagonal().map(|value| value * value).sum::<f64>().sqrt();
+        let diagonal = |node: usize| self.system.matrix.block(node, node).squared_norm();
+        let stiffness = (0..self.start.len()).map(diagonal).sum::<f64>().sqrt();
         4.0 * T::EPSILON.to_f64() * self.body.mesh.size() * stiffness
     }
 
-    fn assemble(&mut self) {
-        let state = &self.body.state;
-        let scratch = &mut self.body.scratch;
-        self.assembly.assemble(&mut self.matrix, |dx, out| {
-            for model in &state.models {
-                model.add_product(&state.positions, dx, scratch, out);
-            }
-        });
+    /// The stiffness of the tissue, and of loads that follow the surface.
+    fn assemble(&mut self, share: f64) {
+        self.system.matrix.clear();
+        let body = &mut *self.body;
+        let (state, mut sink) = (&body.state, Widen(&mut self.system.matrix));
+        for model in &state.models {
+            model.linearize(&state.positions, &mut body.scratch);
+            model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
+        }
+        body.loads.add_blocks(self.time, &state.positions, &state.removed, share, &mut sink);
     }
 
     /// K⁻¹ r with the stiffness at the current positions, shifted as far as it takes.
-    fn descend(&mut self, residual: &[f64]) -> Result<Vec<f64>, SolverError> {
-        self.assemble();
+    fn descend(&mut self, residual: &[Vec3<f64>], share: f64) -> Result<Vec<Vec3<f64>>, SolverError> {
+        self.assemble(share);
+        let mean = self.system.mean_diagonal();
         let mut last = 0.0;
         let mut outcome = Err(SolverError::NotPositiveDefinite);
         for shift in SHIFTS {
             if shift > 0.0 {
-                self.matrix.shift(shift - last);
+                self.system.shift((shift - last) * mean);
             }
             last = shift;
             let mut step = residual.to_vec();
             outcome = self
                 .solver
-                .factor(&self.matrix)
-                .and_then(|()| self.solver.solve(&self.matrix, &mut step))
+                .factor(&self.system)
+                .and_then(|()| self.solver.solve(&self.system, &mut step))
                 .map(|()| step);
             self.shifted = shift > 0.0;
             if outcome.is_ok() {
@@ -162,16 +162,23 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         outcome
     }
 
+    /// Puts the body where it was, moved by a `length` of `step`.
+    fn move_from(&mut self, from: &[Vec3<T>], step: &[Vec3<f64>], length: f64) {
+        let positions = &mut self.body.state.positions;
+        for ((x, &from), &step) in positions.iter_mut().zip(from).zip(step) {
+            *x = from + (step * length).cast();
+        }
+        self.body.state.positions_changed();
+    }
+
     /// Moves along `step` until the energy falls as it should, or the residual does; gives whether that was found.
-    fn search(&mut self, step: &[f64], loads: &[Vec3<T>], residual: &[f64], share: f64) -> bool {
+    fn search(&mut self, step: &[Vec3<f64>], loads: &[Vec3<T>], residual: &[Vec3<f64>], share: f64) -> bool {
         let from = self.body.state.positions.clone();
-        let slope: f64 = step.iter().zip(residual).map(|(p, r)| p * r).sum();
+        let slope = dot(step, residual);
         let before = self.energy(&from, loads);
         let mut length = 1.0;
         for _ in 0..HALVINGS {
-            self.body.state.positions.clone_from(&from);
-            self.assembly.scatter(step, length, &mut self.body.state.positions);
-            self.body.state.positions_changed();
+            self.move_from(&from, step, length);
             if self.energy(&from, loads) <= before - DECREASE * length * slope
                 || norm(&self.residual(share).1) < 0.5 * norm(residual)
             {
@@ -180,8 +187,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
             length *= 0.5;
         }
         // Close to the end the energy cannot be told apart any more, and the residual goes on falling slowly.
-        self.body.state.positions.clone_from(&from);
-        self.assembly.scatter(step, 1.0, &mut self.body.state.positions);
+        self.move_from(&from, step, 1.0);
         norm(&self.residual(share).1) < norm(residual)
     }
 
@@ -195,24 +201,25 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
 
     /// Puts held nodes where they are at a share of the load, and lets the rest follow linearly: K du = −K du_held.
     fn move_held_nodes(&mut self, share: f64) -> Result<(), SolverError> {
-        let (share, rest) = (T::from_f64(share), T::from_f64(1.0 - share));
-        let mut jump = vec![Vec3::ZERO; self.free.len()];
-        for node in (0..self.free.len()).filter(|&node| !self.free[node]) {
-            jump[node] = self.start[node] * rest + self.targets[node] * share - self.body.state.positions[node];
-        }
-        if jump.iter().all(|jump| jump.squared_norm() <= T::ZERO) {
+        let (share_reached, rest) = (T::from_f64(share), T::from_f64(1.0 - share));
+        let mut jump: Vec<Vec3<f64>> = (0..self.start.len())
+            .map(|node| {
+                let goal = self.start[node] * rest + self.targets[node] * share_reached;
+                let jump = (goal - self.body.state.positions[node]).cast();
+                jump - self.system.filters[node].apply(jump)
+            })
+            .collect();
+        if jump.iter().all(|jump| jump.squared_norm() <= 0.0) {
             return Ok(());
         }
+        self.assemble(share);
         let mut forces = vec![Vec3::ZERO; jump.len()];
-        for model in &self.body.state.models {
-            model.add_product(&self.body.state.positions, &jump, &mut self.body.scratch, &mut forces);
-        }
-        let mut right = vec![0.0; self.matrix.size()];
-        self.assembly.gather(&forces, &mut right);
-        let follow = self.descend(&right)?;
-        self.body.state.positions.iter_mut().zip(&jump).for_each(|(x, &jump)| *x += jump);
-        self.assembly.scatter(&follow, -1.0, &mut self.body.state.positions);
-        self.body.state.positions_changed();
+        self.system.apply(&jump, &mut forces);
+        self.system.filter(&mut forces);
+        let follow = self.descend(&forces, share)?;
+        jump.iter_mut().zip(&follow).for_each(|(jump, &follow)| *jump = *jump - follow);
+        let from = self.body.state.positions.clone();
+        self.move_from(&from, &jump, 1.0);
         Ok(())
     }
 
@@ -221,15 +228,16 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         // Loads first, and both together by superposition: the stiffness is that of the start for either.
         let (_, residual, scale) = self.residual(1.0);
         let before = norm(&residual) / scale;
-        let stable = |outcome: Result<Vec<f64>, SolverError>, shifted: bool| match outcome {
+        let stable = |outcome: Result<Vec<Vec3<f64>>, SolverError>, shifted: bool| match outcome {
             Ok(step) if !shifted => Ok(step),
             Ok(_) => Err(StaticFailure::Unstable),
             Err(error) => Err(StaticFailure::Solver(error)),
         };
-        let outcome = self.descend(&residual);
+        let outcome = self.descend(&residual, 0.0);
         let step = stable(outcome, self.shifted).map_err(|failure| self.beyond(0.0, 1.0, failure))?;
         self.move_held_nodes(1.0).map_err(|error| self.beyond(0.0, 1.0, StaticFailure::Solver(error)))?;
-        self.assembly.scatter(&step, 1.0, &mut self.body.state.positions);
+        let from = self.body.state.positions.clone();
+        self.move_from(&from, &step, 1.0);
         let (_, left, scale) = self.residual(1.0);
         let residuals = vec![before, norm(&left) / scale];
         Ok(StaticReport { steps: vec![LoadStep { share: 1.0, residuals }], retries: 0 })
@@ -259,6 +267,15 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     }
 }
 
-fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+fn norm(values: &[Vec3<f64>]) -> f64 {
+    dot(values, values).sqrt()
+}
+
+/// Gives blocks of any precision to a matrix in double precision.
+struct Widen<'a>(&'a mut BlockMatrix<f64>);
+
+impl<T: Scalar> BlockSink<T> for Widen<'_> {
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
+        self.0.add(row, column, block.cast());
+    }
 }

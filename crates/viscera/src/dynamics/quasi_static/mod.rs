@@ -1,6 +1,6 @@
 //! Equilibrium under loads: Newton's method with load steps and a line search.
 //!
-//! Sought is x with f_int(x) = f_ext(x) at the free components. The load is put on in steps, each a share s of the way
+//! Sought is x with f_int(x) = f_ext(x) in the free directions. The load is put on in steps, each a share s of the way
 //! from where the body is (s = 0) to the whole load (s = 1):
 //!
 //! f_int(x) = (1 − s) f_int(x_start) + s f_ext(x),   x_held = (1 − s) x_start + s x_target
@@ -8,8 +8,8 @@
 //! so that any state is a start. The first try is the whole load; a share that fails is halved, one that succeeds is doubled.
 //!
 //! One iteration solves K p = r with the tangent K(x), shifted along its diagonal until it is positive definite, so that p
-//! lowers the energy W(x) − f_ext·x (Nocedal, Wright, Numerical optimization, 2006, sections 3.4 and 3.5). K leaves out the
-//! derivative of follower loads (pressures): quadratic convergence becomes linear there.
+//! lowers the energy W(x) − f_ext·x (Nocedal, Wright, Numerical optimization, 2006, sections 3.4 and 3.5). K has the symmetric
+//! part of the derivative of loads that follow the surface (pressures): all of it but at the rim of the loaded surface.
 //!
 //! A state counts when its residual is small, its stiffness positive definite without a shift, and no cell inverted. Laws
 //! without a barrier, as St Venant–Kirchhoff, have other equilibria, inside out, which are no answers.

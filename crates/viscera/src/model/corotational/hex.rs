@@ -4,34 +4,34 @@ use fearless_simd::{Simd, dispatch};
 
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
+use super::hex_linearized::LINEARIZED;
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
 use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
+use crate::model::block_sink::{BlockSink, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::tet_loop::scatter_corner;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 use crate::model::{ForceModel, ModelError, Scratch};
 
 /// Gauss points of a cell.
-const POINTS: usize = 8;
+pub(super) const POINTS: usize = 8;
 /// Gradients at the centre: three numbers for each corner.
 const CENTRE: usize = 24;
-/// Numbers of a rotation.
-const ROTATION: usize = 9;
 
 /// Corotational hexahedra. R is that of the mean edges, J = F at the centre. For QR the gradients are those of the rest
 /// shape turned so that its own mean edges 1 and 2 lie along its first axes, as with tetrahedra.
 #[derive(Clone, Debug)]
 pub(super) struct CorotationalHexes<T: Scalar> {
-    corners: BlockTable<u32>,
+    pub(super) corners: BlockTable<u32>,
     /// Gradients at the centre.
-    centres: BlockTable<T>,
+    pub(super) centres: BlockTable<T>,
     /// Gradients and volume of each Gauss point.
-    points: BlockTable<T>,
-    law: BlockTable<T>,
-    formulation: Formulation,
+    pub(super) points: BlockTable<T>,
+    pub(super) law: BlockTable<T>,
+    pub(super) formulation: Formulation,
     fibred: bool,
 }
 
@@ -73,7 +73,7 @@ impl<T: Scalar> CorotationalHexes<T> {
     }
 
     #[inline(always)]
-    fn load_law<S: Simd>(&self, simd: S, block: &[T]) -> Hooke<T::Lanes<S>> {
+    pub(super) fn load_law<S: Simd>(&self, simd: S, block: &[T]) -> Hooke<T::Lanes<S>> {
         let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); FIBRED];
         for column in 0..if self.fibred { FIBRED } else { ISOTROPIC } {
             numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
@@ -81,68 +81,83 @@ impl<T: Scalar> CorotationalHexes<T> {
         Hooke::at(&numbers, self.fibred)
     }
 
-    /// For every batch and Gauss point, adds V · stress · gradients to the corners.
+    /// The batch of these corners at `x`.
     #[inline(always)]
-    fn add_with<S: Simd, const PRODUCT: bool>(
+    fn load<S: Simd>(&self, simd: S, x: &[[T; 4]], nodes: &[u32], centre: &[T], law: &[T]) -> Batch<T::Lanes<S>> {
+        let place = gather_corners(simd, x, nodes);
+        let centre = load_gradients::<T, S>(simd, centre);
+        let mean = deformation(&place, &centre);
+        let r = self.formulation.rotation(&mean);
+        Batch { hooke: self.load_law(simd, law), place, centre, mean, r }
+    }
+
+    /// Forces on the corners, or with `PRODUCT` their derivative along `direction`.
+    #[inline(always)]
+    fn element_forces<S: Simd, const PRODUCT: bool>(
         &self,
         simd: S,
-        x: &[[T; 4]],
-        dx: &[[T; 4]],
-        rotations: Option<&[T]>,
-        out: &mut [[T; 4]],
-    ) {
-        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
-        for (batch, (((nodes, centre), points), law)) in tables.enumerate() {
-            let hooke = self.load_law(simd, law);
-            let place = gather_corners(simd, x, nodes);
-            let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { place };
-            let centre = load_gradients::<T, S>(simd, centre);
-            let mean = deformation(&place, &centre);
-            let r = match rotations {
-                Some(rotations) => load_rotation(simd, &rotations[batch * ROTATION * T::LANES..]),
-                None => self.formulation.rotation(&mean),
+        batch: &Batch<T::Lanes<S>>,
+        points: &[T],
+        direction: &[Vec3<T::Lanes<S>>; 8],
+    ) -> [Vec3<T::Lanes<S>>; 8] {
+        let Batch { hooke, place, centre, mean, r } = batch;
+        let dr = if PRODUCT { self.formulation.rotation_along(mean, r, &deformation(direction, centre)) } else { *r };
+        let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+        for point in points.chunks_exact(POINT * T::LANES) {
+            let gradients = load_gradients::<T, S>(simd, point);
+            let f = deformation(place, &gradients);
+            let stress = if PRODUCT {
+                self.formulation.stress_along(hooke, (r, &dr), (&f, &deformation(direction, &gradients)))
+            } else {
+                self.formulation.stress(hooke, r, &f)
             };
-            let dr =
-                if PRODUCT { self.formulation.rotation_along(&mean, &r, &deformation(&direction, &centre)) } else { r };
-            let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
-            for point in points.chunks_exact(POINT * T::LANES) {
-                let gradients = load_gradients::<T, S>(simd, point);
-                let f = deformation(&place, &gradients);
-                let stress = if PRODUCT {
-                    let df = deformation(&direction, &gradients);
-                    self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df))
-                } else {
-                    self.formulation.stress(&hooke, &r, &f)
-                };
-                let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
-                for corner in 0..8 {
-                    forces[corner] += stress * gradients[corner];
-                }
+            let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+            for corner in 0..8 {
+                forces[corner] += stress * gradients[corner];
             }
+        }
+        forces
+    }
+
+    /// Adds the forces, or with `PRODUCT` their derivative along `dx`.
+    #[inline(always)]
+    fn add_with<S: Simd, const PRODUCT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
+        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
+        for (((nodes, centre), points), law) in tables {
+            let batch = self.load(simd, x, nodes, centre, law);
+            let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { batch.place };
+            let forces = self.element_forces::<S, PRODUCT>(simd, &batch, points, &direction);
             for corner in 0..8 {
                 scatter_corner::<T, S>(forces[corner], nodes, corner, out);
             }
         }
     }
 
+    /// The blocks of the exact tangent, column by column.
     #[inline(always)]
-    fn linearize_with<S: Simd>(&self, simd: S, x: &[[T; 4]], linearization: &mut [T]) {
-        let rows = linearization.chunks_exact_mut(ROTATION * T::LANES);
-        for ((nodes, centre), row) in self.corners.blocks().zip(self.centres.blocks()).zip(rows) {
-            let place = gather_corners(simd, x, nodes);
-            let r = self.formulation.rotation(&deformation(&place, &load_gradients::<T, S>(simd, centre)));
-            for i in 0..ROTATION {
-                r.columns[i / 3][i % 3].store(&mut row[i * T::LANES..]);
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
+        for (number, (((nodes, centre), points), law)) in tables.enumerate() {
+            let batch = self.load(simd, x, nodes, centre, law);
+            for corner in 0..8 {
+                let mut columns = [batch.place; 3];
+                for axis in 0..3 {
+                    let direction = unit_displacement::<T, S, 8>(simd, corner, axis);
+                    columns[axis] = self.element_forces::<S, true>(simd, &batch, points, &direction);
+                }
+                add_block_column::<T, S, 8>(&columns, nodes, corner, self.corners.rows() - number * T::LANES, sink);
             }
         }
     }
 }
 
-#[inline(always)]
-fn load_rotation<T: Scalar, S: Simd>(simd: S, row: &[T]) -> Mat3<T::Lanes<S>> {
-    let number = |i: usize| T::Lanes::<S>::load(simd, &row[i * T::LANES..]);
-    let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
-    Mat3::from_columns(column(0), column(1), column(2))
+/// A batch of elements: law, corners, gradients and F at the centre, rotation.
+struct Batch<R> {
+    hooke: Hooke<R>,
+    place: [Vec3<R>; 8],
+    centre: [Vec3<R>; 8],
+    mean: Mat3<R>,
+    r: Mat3<R>,
 }
 
 impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
@@ -153,13 +168,13 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, None, forces));
+        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
         scratch.finish(out);
     }
 
     fn linearization_len(&self) -> usize {
         match self.formulation.tangent {
-            Tangent::Frozen => self.corners.padded_rows() * ROTATION,
+            Tangent::Frozen => self.corners.padded_rows() * LINEARIZED,
             Tangent::Exact => 0,
         }
     }
@@ -173,12 +188,35 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces, linearization, is_linearized } = scratch;
-        let rotations = is_linearized.then_some(&linearization[..]);
-        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, rotations, forces));
+        if scratch.is_linearized {
+            scratch.clear_forces();
+            let Scratch { direction, forces, linearization, .. } = scratch;
+            dispatch!(dispatch_level(), simd => self.add_linearized_product_with(simd, linearization, direction, forces));
+        } else {
+            scratch.start(x);
+            let Scratch { nodal, direction, forces, .. } = scratch;
+            dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+        }
         scratch.finish(out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        match self.formulation.tangent {
+            Tangent::Frozen => {
+                let was_linearized = scratch.is_linearized;
+                if !was_linearized {
+                    self.linearize(x, scratch);
+                }
+                let linearization = &scratch.linearization;
+                dispatch!(dispatch_level(), simd => self.add_linearized_blocks_with(simd, linearization, sink));
+                scratch.is_linearized = was_linearized;
+            }
+            Tangent::Exact => {
+                scratch.start(x);
+                dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+            }
+        }
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -1,5 +1,5 @@
 use crate::material::RestStiffness;
-use crate::math::{Dual, Real, Sym3, Vec3};
+use crate::math::{Dual, Mat3, Real, Sym3, Vec3};
 
 /// Hooke's law with or without fibres: σ(ε) = λ tr ε I + 2μ ε + 2κ_a (a0·ε a0) a0 a0ᵀ.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +50,20 @@ impl<R: Real> Hooke<R> {
     #[inline(always)]
     pub(super) fn energy(&self, strain: Sym3<R>) -> R {
         self.stress(strain).contract(strain).half()
+    }
+
+    /// The block K_pq [N/m] of the corners with the gradients `p` and `q`, both times the root of the volume: the force
+    /// σ(sym(b qᵀ)) p is K_pq b for every displacement b.
+    #[inline(always)]
+    pub(super) fn block(&self, p: Vec3<R>, q: Vec3<R>) -> Mat3<R> {
+        let matrix = p.outer(q) * self.lambda + q.outer(p) * self.mu + Mat3::diagonal(self.mu * p.dot(q));
+        match self.fibre {
+            Some((direction, stiffness)) => {
+                let along = stiffness * direction.dot(p) * direction.dot(q);
+                matrix + direction.outer(direction * along)
+            }
+            None => matrix,
+        }
     }
 
     /// The same law for dual numbers.

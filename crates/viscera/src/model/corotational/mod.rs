@@ -19,7 +19,9 @@
 mod formulation;
 mod frequency;
 mod hex;
+mod hex_linearized;
 mod hooke;
+mod lane_vector;
 mod tet;
 mod warping;
 

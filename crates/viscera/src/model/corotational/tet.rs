@@ -5,10 +5,12 @@ use fearless_simd::{Simd, dispatch};
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
+use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
 use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, dispatch_level};
 use crate::mesh::TetMesh;
+use crate::model::block_sink::{BlockSink, add_block, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::tet_loop::{RestTet, gather_edges, scatter_forces};
 use crate::model::{ForceModel, ModelError, Scratch};
@@ -38,6 +40,12 @@ struct Batch<R> {
     inverse: Mat3<R>,
     volume: R,
     hooke: Hooke<R>,
+}
+
+/// The law of a batch, and √(s V) R A α of the corners 1, 2, 3.
+struct Turned<R> {
+    hooke: Hooke<R>,
+    gradients: Mat3<R>,
 }
 
 impl<R: Real> Batch<R> {
@@ -145,12 +153,57 @@ impl<T: Scalar> CorotationalTets<T> {
     fn add_linearized_product_with<S: Simd>(&self, simd: S, linearization: &[T], dx: &[[T; 4]], out: &mut [[T; 4]]) {
         let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
         for ((nodes, block), row) in self.corners.blocks().zip(self.constants.blocks()).zip(rows) {
-            let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
-            let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
-            let fibre = if self.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
-            let hooke = Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre };
+            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
             let strain = (gather_edges(simd, dx, nodes) * gradients.transpose()).symmetric_part();
             scatter_forces(simd, times(hooke.stress(strain), &gradients), nodes, out);
+        }
+    }
+
+    #[inline(always)]
+    fn load_linearized<S: Simd>(&self, simd: S, block: &[T], row: &[T]) -> Turned<T::Lanes<S>> {
+        let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
+        let fibre = if self.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
+        Turned { hooke: Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients }
+    }
+
+    #[inline(always)]
+    fn add_linearized_blocks_with<S: Simd>(&self, simd: S, linearization: &[T], sink: &mut dyn BlockSink<T>) {
+        let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
+        for (batch, ((nodes, block), row)) in self.corners.blocks().zip(self.constants.blocks()).zip(rows).enumerate() {
+            let elements = self.corners.rows() - batch * T::LANES;
+            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
+            let [b, c, d] = gradients.columns;
+            let gradients = [-(b + c + d), b, c, d];
+            for q in 0..4 {
+                for p in 0..4 {
+                    if p == q || !sink.keeps_diagonal_only() {
+                        add_block::<T, S>(&hooke.block(gradients[p], gradients[q]), nodes, [p, q], elements, sink);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The blocks of the exact tangent, column by column.
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        for (batch, (nodes, block)) in self.corners.blocks().zip(self.constants.blocks()).enumerate() {
+            let Batch { inverse, volume, hooke } = self.load(simd, block);
+            let f = gather_edges(simd, x, nodes) * inverse;
+            let r = self.formulation.rotation(&f);
+            for corner in 0..4 {
+                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 4]; 3];
+                for axis in 0..3 {
+                    let [a, b, c, d] = unit_displacement::<T, S, 4>(simd, corner, axis);
+                    let df = Mat3::from_columns(b - a, c - a, d - a) * inverse;
+                    let dr = self.formulation.rotation_along(&f, &r, &df);
+                    let stress = self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
+                    let [f1, f2, f3] = (stress * volume * inverse.transpose()).columns;
+                    columns[axis] = [-(f1 + f2 + f3), f1, f2, f3];
+                }
+                add_block_column::<T, S, 4>(&columns, nodes, corner, self.corners.rows() - batch * T::LANES, sink);
+            }
         }
     }
 
@@ -162,19 +215,6 @@ impl<T: Scalar> CorotationalTets<T> {
         }
         Batch::at(&numbers, self.fibred)
     }
-}
-
-#[inline(always)]
-fn store<T: Scalar, S: Simd>(vector: Vec3<impl Lanes<T, S>>, columns: &mut [T]) {
-    vector.x.store(columns);
-    vector.y.store(&mut columns[T::LANES..]);
-    vector.z.store(&mut columns[2 * T::LANES..]);
-}
-
-#[inline(always)]
-fn load<T: Scalar, S: Simd>(simd: S, row: &[T], column: usize) -> Vec3<T::Lanes<S>> {
-    let number = |i: usize| T::Lanes::<S>::load(simd, &row[(column + i) * T::LANES..]);
-    Vec3::new(number(0), number(1), number(2))
 }
 
 /// S A for a symmetric S.
@@ -211,15 +251,35 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces, linearization, is_linearized } = scratch;
-        if *is_linearized {
+        if scratch.is_linearized {
+            scratch.clear_forces();
+            let Scratch { direction, forces, linearization, .. } = scratch;
             dispatch!(dispatch_level(), simd => self.add_linearized_product_with(simd, linearization, direction, forces));
         } else {
+            scratch.start(x);
+            let Scratch { nodal, direction, forces, .. } = scratch;
             dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
         }
         scratch.finish(out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        match self.formulation.tangent {
+            Tangent::Frozen => {
+                let was_linearized = scratch.is_linearized;
+                if !was_linearized {
+                    self.linearize(x, scratch);
+                }
+                let linearization = &scratch.linearization;
+                dispatch!(dispatch_level(), simd => self.add_linearized_blocks_with(simd, linearization, sink));
+                scratch.is_linearized = was_linearized;
+            }
+            Tangent::Exact => {
+                scratch.start(x);
+                dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+            }
+        }
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

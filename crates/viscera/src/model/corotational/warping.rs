@@ -16,7 +16,7 @@ use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{TET_EDGES, TetMesh, VolumeMesh};
 use crate::model::registry::Claims;
 use crate::model::tet_loop::RestTet;
-use crate::model::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use crate::model::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 
 /// Numbers of a rotation.
 const ROTATION: usize = 9;
@@ -177,6 +177,17 @@ impl<T: Scalar> WarpedTets<T> {
         }
     }
 
+    /// The rotations that products use: those that were kept for them, or those at `x`.
+    fn rotations_of_products<'a>(&self, x: &[Vec3<T>], scratch: &'a mut Scratch<T>) -> &'a [T] {
+        let held = scratch.is_linearized;
+        let rotations = scratch.room_for_linearization(self.linearization_len());
+        let (products, forces) = rotations.split_at_mut(ROTATION * self.fits.len());
+        if !held {
+            self.rotate(x, forces);
+        }
+        if held { products } else { forces }
+    }
+
     /// Adds R_p V σ(sym(R_pᵀ A) − `rest`) α_p for each corner of each cell, with A the gradient of `x` over the rest shape.
     fn add(&self, x: &[Vec3<T>], rest: T, rotations: &[T], out: &mut [Vec3<T>]) {
         for cell in self.cells.iter().filter(|cell| !cell.removed) {
@@ -233,13 +244,23 @@ impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        let held = scratch.is_linearized;
-        let rotations = scratch.room_for_linearization(self.linearization_len());
-        let (products, forces) = rotations.split_at_mut(ROTATION * self.fits.len());
-        if !held {
-            self.rotate(x, forces);
+        self.add(dx, T::ZERO, self.rotations_of_products(x, scratch), out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        let rotations = self.rotations_of_products(x, scratch);
+        for cell in self.cells.iter().filter(|cell| !cell.removed) {
+            let [a, b, c] = cell.inverse.transpose().columns;
+            let gradients = [-(a + b + c), a, b, c];
+            for (&row, p) in cell.corners.iter().zip(gradients) {
+                let r = read(rotations, row as usize);
+                for (&column, q) in cell.corners.iter().zip(gradients) {
+                    if row == column || !sink.keeps_diagonal_only() {
+                        sink.add(row, column, r * cell.hooke.block(p * cell.volume, q) * r.transpose());
+                    }
+                }
+            }
         }
-        self.add(dx, T::ZERO, if held { products } else { forces }, out);
     }
 
     /// ½ V ε:σ(ε), the mean over the corners' rotations: a measure of deformation, not a potential of the forces.

@@ -7,6 +7,7 @@ use fearless_simd::{Simd, dispatch};
 use super::entity::{Corner, Entity, MAX_COLUMNS};
 use super::tensors::TetTensors;
 use crate::math::{Dual, Lanes, Real, Scalar, Vec3, dispatch_level};
+use crate::model::block_sink::{BlockSink, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::tet_loop::scatter_corner;
 
@@ -125,19 +126,32 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
             let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
-            let corners: [Corner<Dual<T::Lanes<S>>>; NODES] = dual_corners::<T::Lanes<S>, NODES>(&at, &along);
-            let mut constants = [Dual::constant(c[0]); MAX_COLUMNS];
-            for column in 0..E::COLUMNS {
-                constants[column] = Dual::constant(c[column]);
-            }
-            let mut forces = E::linear(&c, &along).unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
-            if let Some(nonlinear) = E::nonlinear(&constants, &corners) {
-                for node in 0..NODES {
-                    let [x, y, z] = nonlinear[node].to_array().map(|component| component.derivative);
-                    forces[node] = Vec3::new(x, y, z).mul_add(at[node].weight, forces[node]);
+            scatter_corners(simd, forces_along::<_, E, NODES>(&c, &at, &along), nodes, out);
+        }
+    }
+
+    /// Gives the blocks of the derivative of the forces, weights held.
+    pub(crate) fn add_blocks(&self, nodal: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, nodal, sink));
+    }
+
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        for (block, (nodes, stored)) in self.nodes.blocks().zip(self.stored.blocks()).enumerate() {
+            let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
+            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
+            for corner in 0..NODES {
+                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]; 3];
+                for axis in 0..3 {
+                    let mut along = at;
+                    let unit = unit_displacement::<T, S, NODES>(simd, corner, axis);
+                    for node in 0..NODES {
+                        along[node].u = unit[node];
+                    }
+                    columns[axis] = forces_along::<_, E, NODES>(&c, &at, &along);
                 }
+                add_block_column::<T, S, NODES>(&columns, nodes, corner, self.nodes.rows() - block * T::LANES, sink);
             }
-            scatter_corners(simd, forces, nodes, out);
         }
     }
 
@@ -187,6 +201,28 @@ fn gather_corners<T: Scalar, S: Simd, const NODES: usize>(
         corners[node] = Corner { u: Vec3::new(x, y, z), weight };
     }
     corners
+}
+
+/// Derivative of the forces at `at` along the displacements `along`.
+#[inline(always)]
+fn forces_along<R: Real, E: Entity<NODES>, const NODES: usize>(
+    c: &[R; MAX_COLUMNS],
+    at: &[Corner<R>; NODES],
+    along: &[Corner<R>; NODES],
+) -> [Vec3<R>; NODES] {
+    let corners = dual_corners(at, along);
+    let mut constants = [Dual::constant(c[0]); MAX_COLUMNS];
+    for column in 0..E::COLUMNS {
+        constants[column] = Dual::constant(c[column]);
+    }
+    let mut forces = E::linear(c, along).unwrap_or([Vec3::splat(c[0].zero_like()); NODES]);
+    if let Some(nonlinear) = E::nonlinear(&constants, &corners) {
+        for node in 0..NODES {
+            let [x, y, z] = nonlinear[node].to_array().map(|component| component.derivative);
+            forces[node] = Vec3::new(x, y, z).mul_add(at[node].weight, forces[node]);
+        }
+    }
+    forces
 }
 
 #[inline(always)]

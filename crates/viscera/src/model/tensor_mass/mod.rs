@@ -25,7 +25,7 @@ use self::entity::{Edge, Tetrahedron, Triangle, Vertex};
 pub(crate) use self::entity::{LinearEdge, LinearVertex};
 pub(crate) use self::entity_loop::EntityLoop;
 pub(crate) use self::shape::RestShape;
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -163,6 +163,16 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
         self.triangles.add_product(nodal, direction, forces);
         self.tetrahedra.add_product(nodal, direction, forces);
         scratch.finish(out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        scratch.start(x);
+        let nodal = &mut scratch.nodal;
+        self.subtract_rest(nodal);
+        self.vertices.add_blocks(nodal, sink);
+        self.edges.add_blocks(nodal, sink);
+        self.triangles.add_blocks(nodal, sink);
+        self.tetrahedra.add_blocks(nodal, sink);
     }
 
     /// Energy of the full law, also where an adaptive model is linear.

@@ -6,9 +6,10 @@ use std::marker::PhantomData;
 
 use fearless_simd::{Simd, dispatch};
 
+use super::super::block_sink::{add_block_column, unit_displacement};
 use super::super::block_table::BlockTable;
 use super::super::tet_loop::{gather_corner, scatter_corner};
-use super::super::{ForceModel, ModelError, Scratch};
+use super::super::{BlockSink, ForceModel, ModelError, Scratch};
 use super::TotalLagrangian;
 use crate::material::{Law, LawFamily, Tissue};
 use crate::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
@@ -73,35 +74,72 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
         }
     }
 
-    /// For every batch and Gauss point, adds V · stress · gradients to the corners; `stress` sees the law and F.
+    /// Adds the forces at `x`, or with `TANGENT` their derivative along `dx`.
     #[inline(always)]
     fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
         let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
         for ((nodes, points), parameters) in blocks {
-            let zero = T::Lanes::<S>::splat(simd, T::ZERO);
-            let mut values = [zero; 8];
-            for column in 0..L::PARAMETERS.len() {
-                values[column] = T::Lanes::<S>::load(simd, &parameters[column * T::LANES..]);
-            }
-            let law = L::at(&values[..L::PARAMETERS.len()]);
-            let mut forces = [Vec3::splat(zero); 8];
+            let parameters = load_parameters::<T, S, L>(simd, parameters);
             let place = gather_corners(simd, x, nodes);
             let direction = if TANGENT { gather_corners(simd, dx, nodes) } else { place };
-            for point in points.chunks_exact(POINT * T::LANES) {
-                let gradients = load_gradients::<T, S>(simd, point);
-                let f = deformation(&place, &gradients);
-                let stress =
-                    if TANGENT { law.tangent(&f, &deformation(&direction, &gradients)) } else { law.stress(&f) };
-                let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
-                for corner in 0..8 {
-                    forces[corner] += stress * gradients[corner];
-                }
-            }
+            let forces = element_forces::<T, S, L, TANGENT>(simd, &parameters, points, &place, &direction);
             for corner in 0..8 {
                 scatter_corner::<T, S>(forces[corner], nodes, corner, out);
             }
         }
     }
+
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
+        for (block, ((nodes, points), parameters)) in blocks.enumerate() {
+            let parameters = load_parameters::<T, S, L>(simd, parameters);
+            let place = gather_corners(simd, x, nodes);
+            for corner in 0..8 {
+                let mut columns = [place; 3];
+                for axis in 0..3 {
+                    let direction = unit_displacement::<T, S, 8>(simd, corner, axis);
+                    columns[axis] = element_forces::<T, S, L, true>(simd, &parameters, points, &place, &direction);
+                }
+                add_block_column::<T, S, 8>(&columns, nodes, corner, self.corners.rows() - block * T::LANES, sink);
+            }
+        }
+    }
+}
+
+/// The most parameters of a law.
+const MAX_PARAMETERS: usize = 8;
+
+#[inline(always)]
+fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_PARAMETERS] {
+    let mut parameters = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_PARAMETERS];
+    for column in 0..L::PARAMETERS.len() {
+        parameters[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+    }
+    parameters
+}
+
+/// Forces on the corners, or with `TANGENT` their derivative along `direction`.
+#[inline(always)]
+fn element_forces<T: Scalar, S: Simd, L: LawFamily, const TANGENT: bool>(
+    simd: S,
+    parameters: &[T::Lanes<S>; MAX_PARAMETERS],
+    points: &[T],
+    place: &[Vec3<T::Lanes<S>>; 8],
+    direction: &[Vec3<T::Lanes<S>>; 8],
+) -> [Vec3<T::Lanes<S>>; 8] {
+    let law = L::at(&parameters[..L::PARAMETERS.len()]);
+    let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+    for point in points.chunks_exact(POINT * T::LANES) {
+        let gradients = load_gradients::<T, S>(simd, point);
+        let f = deformation(place, &gradients);
+        let stress = if TANGENT { law.tangent(&f, &deformation(direction, &gradients)) } else { law.stress(&f) };
+        let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+        for corner in 0..8 {
+            forces[corner] += stress * gradients[corner];
+        }
+    }
+    forces
 }
 
 #[inline(always)]
@@ -157,10 +195,15 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
         scratch.finish(out);
     }
 
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        scratch.start(x);
+        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+    }
+
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let mut total = 0.0;
         for row in 0..self.corners.rows() {
-            let mut values = [0.0; 8];
+            let mut values = [0.0; MAX_PARAMETERS];
             for column in 0..L::PARAMETERS.len() {
                 values[column] = self.parameters.get(row, column).to_f64();
             }

@@ -64,6 +64,16 @@ fn metric_along<R: Real>(d: &Mat3<R>, dd: &Mat3<R>) -> Sym3<R> {
     (d.transpose() * *dd).symmetric_part() * d.columns[0].x.like(2.0)
 }
 
+#[inline(always)]
+fn middle<R: Real>(from: Mat3<R>, to: Mat3<R>) -> Mat3<R> {
+    (from + to) * from.columns[0].x.like(0.5)
+}
+
+#[inline(always)]
+fn mean_metric<R: Real>(from: &Mat3<R>, to: &Mat3<R>) -> Sym3<R> {
+    (from.gram() + to.gram()) * from.columns[0].x.like(0.5)
+}
+
 // tr(E²) = ¼ tr(M²) with M = A0 G − I: a product of small numbers at small strain, where tr C² − 2 tr C + 3 would cancel.
 #[inline(always)]
 fn isotropic_energy<R: Real>(c: &[R], g: Sym3<R>) -> R {
@@ -82,6 +92,14 @@ impl TetConstants for StVenantKirchhoffMetric {
 }
 
 impl TetKernel for StVenantKirchhoffMetric {
+    const KEEPS_ENERGY: bool = true;
+
+    // D in the middle, the stress, which is linear in G, at the mean of both G (Simo, Tarnow 1992).
+    #[inline(always)]
+    fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
+        middle(*from, *to) * contravariant_stress(constants, mean_metric(from, to))
+    }
+
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         isotropic_energy(constants, d.gram())
@@ -133,6 +151,15 @@ impl TetConstants for TransverseMetric {
 }
 
 impl TetKernel for TransverseMetric {
+    const KEEPS_ENERGY: bool = true;
+
+    #[inline(always)]
+    fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
+        let (g, b) = (mean_metric(from, to), fibre(constants));
+        let along_fibre = Sym3::square(b) * (constants[11] * fibre_strain(b, g));
+        middle(*from, *to) * (contravariant_stress(constants, g) + along_fibre)
+    }
+
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
         let g = d.gram();

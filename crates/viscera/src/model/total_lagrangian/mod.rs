@@ -13,7 +13,7 @@ use self::hex::HexLoop;
 use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, MeanForces, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
@@ -129,6 +129,12 @@ impl<T: Scalar, K: TetKernel> TetModel<T, K> {
     }
 }
 
+impl<T: Scalar, K: TetKernel> MeanForces<T> for TetModel<T, K> {
+    fn add_mean_forces(&self, from: &[Vec3<T>], to: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.add_mean_forces(from, to, scratch, out);
+    }
+}
+
 impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
     fn name(&self) -> &'static str {
         TotalLagrangian::INFO.name
@@ -140,6 +146,14 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.tets.add_product(x, dx, scratch, out);
+    }
+
+    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.tets.add_blocks(x, scratch, sink);
+    }
+
+    fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
+        K::KEEPS_ENERGY.then_some(self)
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -9,7 +9,7 @@ use viscera::material::{LinearElastic, StVenantKirchhoff, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::{Precision, TotalLagrangian};
-use viscera::world::{BodyId, BodyObservables, Substep, World, WorldConfig};
+use viscera::world::{BodyId, BodyObservables, Integrator, Substep, World, WorldConfig};
 
 pub(crate) type Vector = Vec3<f64>;
 
@@ -42,7 +42,7 @@ pub(crate) fn world<T: Precision>(gravity: [f64; 3], step: f64) -> World<T> {
 
 /// A world without gravity whose sub-steps are exactly its steps of `step` [s].
 pub(crate) fn world_of_single_substeps<T: Precision>(step: f64) -> World<T> {
-    World::new(WorldConfig { gravity: [0.0; 3], step, substep: Substep::Fixed(step) }).unwrap()
+    World::new(WorldConfig { gravity: [0.0; 3], step, integrator: Integrator::Explicit(Substep::Fixed(step)) }).unwrap()
 }
 
 /// Linear tissue [Pa].

@@ -1,0 +1,30 @@
+use crate::body::{NodeMotion, SimulatedBody};
+use crate::math::{Scalar, Vec3};
+
+/// What drives the nodes that forces do not move, over one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive<'a, T> {
+    /// Time at the end of the step [s].
+    pub end: f64,
+    /// Tips of the instruments at that time [m].
+    pub tips: &'a [Vec3<f64>],
+    /// Gravity [m/s²].
+    pub gravity: Vec3<T>,
+}
+
+impl<T: Scalar> Drive<'_, T> {
+    /// Where a node has to be at the end of the step [m], in the directions that are not left to the forces; none for one that
+    /// forces move.
+    pub(super) fn target(&self, body: &SimulatedBody<T>, node: usize) -> Option<Vec3<T>> {
+        let state = &body.state;
+        match state.motions[node] {
+            NodeMotion::Free => None,
+            NodeMotion::Fixed | NodeMotion::Retired => Some(state.positions[node]),
+            NodeMotion::Prescribed(curve) => {
+                Some(body.rest[node] + body.prescribed[curve as usize].at(self.end).cast())
+            }
+            NodeMotion::Guided(guide) => Some(body.rest[node] + body.guides.displacement(guide, self.end).cast()),
+            NodeMotion::Held(instrument) => Some(state.grips[node] + self.tips[instrument as usize].cast()),
+        }
+    }
+}

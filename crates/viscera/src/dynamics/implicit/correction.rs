@@ -1,0 +1,107 @@
+//! The linear system of one iteration of Newton's method.
+
+use super::memory::ImplicitMemory;
+use super::step::Step;
+use super::tangent::Tangent;
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::BlockSink;
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Problem};
+
+/// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
+const ROUNDINGS: f64 = 8.0;
+
+/// What one linear solve did.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solve {
+    pub(super) iterations: u32,
+    pub(super) residual: f64,
+    pub(super) converged: bool,
+    pub(super) negative_curvature: bool,
+    /// Forces that rounding of the positions makes [N].
+    pub(super) rounding: f64,
+}
+
+impl<T: Scalar> Step<'_, T> {
+    /// Prepares the models for products at the positions, once for all of them.
+    pub(super) fn linearize(&mut self) {
+        if !std::mem::replace(&mut self.is_linearized, true) {
+            for model in &self.body.state.models {
+                model.linearize(&self.body.state.positions, &mut self.body.scratch);
+            }
+        }
+    }
+
+    /// Solves for the correction of δ; it holds the guess.
+    pub(super) fn correct(&mut self) -> Solve {
+        self.linearize();
+        let (numbers, dt) = (self.numbers, self.dt);
+        let (alpha, beta) = (self.body.stiffness_damping.to_f64(), self.body.damping.to_f64());
+        let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));
+        let mass_factor = T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt);
+        let (state, memory) = (&self.body.state, &mut *self.memory);
+        for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
+            *mass = nodal * mass_factor;
+        }
+        memory.preconditioner.clear();
+        if let Some(matrix) = &mut memory.matrix {
+            matrix.clear();
+        }
+        let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix: memory.matrix.as_mut() };
+        for model in &state.models {
+            model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+        }
+        let rounding = rounding(memory, &state.positions);
+        memory.preconditioner.invert(stiffness, memory.masses.iter().copied());
+        let mut tangent = Tangent {
+            models: &state.models,
+            positions: &state.positions,
+            scratch: &mut self.body.scratch,
+            assembled: memory.matrix.as_mut(),
+            masses: &memory.masses,
+            stiffness,
+        };
+        let problem = Problem {
+            rhs: &memory.lack,
+            filters: &memory.filters,
+            prescribed: &memory.prescribed,
+            preconditioner: &memory.preconditioner,
+            masses: &memory.masses,
+        };
+        let stop = self.settings.linear;
+        let report = memory.conjugate_gradient.solve(&mut tangent, &problem, stop, &mut memory.correction);
+        Solve {
+            iterations: report.iterations,
+            residual: report.residual,
+            converged: stop.accepts(report.ending),
+            negative_curvature: report.ending == Ending::NegativeCurvature,
+            rounding,
+        }
+    }
+}
+
+/// Blocks go to the preconditioner, and to the matrix where there is one.
+struct Sinks<'a, T> {
+    diagonal: &'a mut BlockJacobi<T>,
+    matrix: Option<&'a mut BlockMatrix<T>>,
+}
+
+impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
+        self.diagonal.add(row, column, block);
+        if let Some(matrix) = &mut self.matrix {
+            matrix.add(row, column, block);
+        }
+    }
+
+    fn keeps_diagonal_only(&self) -> bool {
+        self.matrix.is_none()
+    }
+}
+
+/// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.
+fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>]) -> f64 {
+    let blocks = memory.preconditioner.blocks_mut();
+    let squares =
+        blocks.iter().zip(positions).map(|(block, x)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2));
+    ROUNDINGS * T::EPSILON.to_f64() * squares.sum::<f64>().sqrt()
+}

@@ -1,0 +1,73 @@
+use super::{Implicit, MatrixForm};
+use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter};
+
+/// What an implicit step computes in; it means nothing between steps.
+#[derive(Clone, Debug)]
+pub struct ImplicitMemory<T> {
+    /// Places at the beginning of the step [m].
+    pub(super) start: Vec<Vec3<T>>,
+    /// Velocities at the beginning of the step [m/s].
+    pub(super) velocities: Vec<Vec3<T>>,
+    /// δ, the displacement over the step as far as it is known [m].
+    pub(super) increment: Vec<Vec3<T>>,
+    /// δ̂ without forces; for driven nodes, where they have to go [m].
+    pub(super) coast: Vec<Vec3<T>>,
+    /// v̂ without forces [m/s].
+    pub(super) coast_velocities: Vec<Vec3<T>>,
+    /// What the forces lack to balance, R − F − C v − M a [N].
+    pub(super) lack: Vec<Vec3<T>>,
+    /// Correction of δ in one iteration [m].
+    pub(super) correction: Vec<Vec3<T>>,
+    /// What driven nodes still have to go [m].
+    pub(super) prescribed: Vec<Vec3<T>>,
+    /// Memory for a nodal array: velocities that damp, places at the end.
+    pub(super) nodal: Vec<Vec3<T>>,
+    /// Memory for forces of damping [N].
+    pub(super) damping: Vec<Vec3<T>>,
+    /// The masses' part of the matrix [kg/s²].
+    pub(super) masses: Vec<T>,
+    pub(super) filters: Vec<Filter<T>>,
+    pub(super) preconditioner: BlockJacobi<T>,
+    pub(super) matrix: Option<BlockMatrix<T>>,
+    pub(super) conjugate_gradient: ConjugateGradient<T>,
+    /// Residuals of Newton's iterations over the forces that balance.
+    pub(super) history: Vec<f64>,
+}
+
+impl<T: Scalar> ImplicitMemory<T> {
+    /// Memory for a body of `mesh`, of models that reach over this many `rings` of cells.
+    pub fn new(mesh: &VolumeMesh, rings: usize, settings: &Implicit) -> Self {
+        let nodes = mesh.nodes().len();
+        let zeros = || vec![Vec3::ZERO; nodes];
+        Self {
+            start: zeros(),
+            velocities: zeros(),
+            increment: zeros(),
+            coast: zeros(),
+            coast_velocities: zeros(),
+            lack: zeros(),
+            correction: zeros(),
+            prescribed: zeros(),
+            nodal: zeros(),
+            damping: zeros(),
+            masses: vec![T::ZERO; nodes],
+            filters: vec![Filter::Free; nodes],
+            preconditioner: BlockJacobi::new(nodes),
+            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
+            conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
+        }
+    }
+
+    /// Residuals of the last linear solve over their scale: at the start and after each iteration.
+    pub fn linear_history(&self) -> &[f64] {
+        self.conjugate_gradient.history()
+    }
+
+    /// Residuals of Newton's iterations in the last full step over the forces that balance: at the start and after each.
+    pub fn newton_history(&self) -> &[f64] {
+        &self.history
+    }
+}

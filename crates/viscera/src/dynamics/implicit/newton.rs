@@ -1,0 +1,92 @@
+//! Newton's method for the equations of a step, or one iteration of it.
+
+use super::ImplicitReport;
+use super::balance::Balance;
+use super::step::Step;
+use crate::math::{Scalar, Vec3};
+use crate::solver::dot;
+
+/// The line search is content when the work of the residual along the correction has fallen below this share.
+const CONTENT: f64 = 0.9;
+/// The most lengths that the line search tries.
+const TRIALS: u32 = 10;
+
+impl<T: Scalar> Step<'_, T> {
+    /// One linear solve from where the body is.
+    pub(super) fn solve_linearised(&mut self) -> ImplicitReport {
+        self.evaluate();
+        self.go_on();
+        self.memory.correction.copy_from_slice(&self.memory.coast);
+        let solve = self.correct();
+        self.move_by(1.0);
+        ImplicitReport {
+            newton_iterations: 1,
+            linear_iterations: solve.iterations,
+            residual: solve.residual,
+            converged: solve.converged,
+            negative_curvature: solve.negative_curvature,
+        }
+    }
+
+    /// Linear solves with a line search, until the forces balance.
+    pub(super) fn solve_in_full(&mut self, relative: f64, at_most: u32) -> ImplicitReport {
+        let mut report = ImplicitReport { converged: false, ..ImplicitReport::NOTHING };
+        let mut balance = self.evaluate();
+        let (mut scale, mut floor) = (0.0f64, 0.0);
+        loop {
+            scale = scale.max(balance.scale);
+            report.residual = if scale > 0.0 { balance.lack / scale } else { 0.0 };
+            self.memory.history.push(report.residual);
+            let arrived = self.go_on();
+            report.converged = arrived && balance.lack <= (relative * scale).max(floor);
+            if report.converged || report.newton_iterations == at_most || !balance.lack.is_finite() {
+                return report;
+            }
+            if report.newton_iterations == 0 {
+                self.memory.correction.copy_from_slice(&self.memory.coast);
+            } else {
+                self.memory.correction.fill(Vec3::ZERO);
+            }
+            let solve = self.correct();
+            floor = solve.rounding;
+            report.newton_iterations += 1;
+            report.linear_iterations += solve.iterations;
+            report.negative_curvature |= solve.negative_curvature;
+            balance = self.search(arrived);
+        }
+    }
+
+    /// Sets what driven nodes still have to go; gives whether all are where they have to be.
+    fn go_on(&mut self) -> bool {
+        let memory = &mut *self.memory;
+        let mut arrived = true;
+        for node in 0..memory.prescribed.len() {
+            let rest = memory.coast[node] - memory.increment[node];
+            let rest = rest - memory.filters[node].apply(rest);
+            memory.prescribed[node] = rest;
+            arrived &= rest.norm() <= memory.coast[node].norm() * (T::EPSILON + T::EPSILON);
+        }
+        arrived
+    }
+
+    /// Moves along the correction, as far as it leads towards balance. A step that takes driven nodes along is taken whole.
+    fn search(&mut self, arrived: bool) -> Balance {
+        let before = -dot(&self.memory.lack, &self.memory.correction);
+        let mut length = 1.0;
+        self.move_by(length);
+        let mut balance = self.evaluate();
+        for _ in 1..TRIALS {
+            let after = -dot(&self.memory.lack, &self.memory.correction);
+            let finite = balance.lack.is_finite() && after.is_finite();
+            if finite && (!arrived || after <= CONTENT * before.abs()) {
+                break;
+            }
+            let towards = if finite && after > before { before / (before - after) } else { 0.1 };
+            let shorter = length * towards.clamp(0.1, 0.5);
+            self.move_by(shorter - length);
+            length = shorter;
+            balance = self.evaluate();
+        }
+        balance
+    }
+}

@@ -1,0 +1,97 @@
+use super::Scheme;
+use crate::solver::Stop;
+
+/// Settings of implicit steps. By default linearised backward Euler, without a matrix in memory, to 1e-4 in at most 100
+/// iterations: what play needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Implicit {
+    /// How a step is formed.
+    pub scheme: Scheme,
+    /// How the non-linear equations of a step are solved.
+    pub newton: Newton,
+    /// When the conjugate gradient ends, in every iteration of Newton's method.
+    pub linear: Stop,
+    /// Whether the matrix is put together.
+    pub matrix: MatrixForm,
+}
+
+/// How the non-linear equations of a step are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Newton {
+    /// One linear solve at the beginning of the step.
+    #[default]
+    Linearised,
+    /// Newton's method with a line search.
+    Full {
+        /// The residual force has to fall below this share of the forces that balance [> 0, < 1], or below what rounding
+        /// of the positions makes of them.
+        relative: f64,
+        /// The most iterations [≥ 1]. A step that needs more is undone and is an error.
+        at_most: u32,
+    },
+}
+
+/// How products with the matrix are computed; the answer is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MatrixForm {
+    /// Element by element, never assembled.
+    #[default]
+    Free,
+    /// From assembled rows of 3×3 blocks: worth it where a solve takes many iterations.
+    Assembled,
+}
+
+impl Newton {
+    /// The most iterations.
+    pub(super) fn at_most(self) -> u32 {
+        match self {
+            Self::Linearised => 1,
+            Self::Full { at_most, .. } => at_most,
+        }
+    }
+}
+
+impl Default for Implicit {
+    fn default() -> Self {
+        Self {
+            scheme: Scheme::default(),
+            newton: Newton::default(),
+            linear: Stop::Tolerance { relative: 1e-4, at_most: 100 },
+            matrix: MatrixForm::default(),
+        }
+    }
+}
+
+impl Implicit {
+    /// The scheme with Newton's method carried to 1e-8 in at most 30 iterations, and linear solves to 1e-6: for accuracy.
+    pub fn accurate(scheme: Scheme) -> Self {
+        Self {
+            scheme,
+            newton: Newton::Full { relative: 1e-8, at_most: 30 },
+            linear: Stop::Tolerance { relative: 1e-6, at_most: 2000 },
+            matrix: MatrixForm::Free,
+        }
+    }
+
+    /// The first setting that makes no sense: its name, its value, what would do.
+    pub(crate) fn first_out_of_range(&self) -> Option<(&'static str, f64, &'static str)> {
+        let share = |value: f64| value > 0.0 && value < 1.0;
+        if let Newton::Full { relative, at_most } = self.newton {
+            if !share(relative) {
+                return Some(("newton tolerance", relative, "between 0 and 1"));
+            }
+            if at_most == 0 {
+                return Some(("newton iterations", 0.0, "at least 1"));
+            }
+        }
+        if let Stop::Tolerance { relative, .. } = self.linear
+            && !share(relative)
+        {
+            return Some(("linear tolerance", relative, "between 0 and 1"));
+        }
+        if self.linear.at_most() == 0 {
+            return Some(("linear iterations", 0.0, "at least 1"));
+        }
+        self.scheme.first_out_of_range()
+    }
+}

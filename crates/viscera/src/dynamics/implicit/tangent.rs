@@ -1,0 +1,31 @@
+use crate::math::{Scalar, Vec3};
+use crate::model::{ForceModel, Scratch};
+use crate::solver::{BlockMatrix, LinearOperator};
+
+/// The matrix of an implicit step: masses on the diagonal and a multiple of the stiffness.
+pub(super) struct Tangent<'a, T: Scalar> {
+    pub(super) models: &'a [Box<dyn ForceModel<T>>],
+    pub(super) positions: &'a [Vec3<T>],
+    pub(super) scratch: &'a mut Scratch<T>,
+    /// K, where it is assembled.
+    pub(super) assembled: Option<&'a mut BlockMatrix<T>>,
+    pub(super) masses: &'a [T],
+    pub(super) stiffness: T,
+}
+
+impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
+    fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        match &mut self.assembled {
+            Some(matrix) => matrix.apply(x, out),
+            None => {
+                out.fill(Vec3::ZERO);
+                for model in self.models {
+                    model.add_product(self.positions, x, self.scratch, out);
+                }
+            }
+        }
+        for ((out, &x), &mass) in out.iter_mut().zip(x).zip(self.masses) {
+            *out = x.mul_add(mass, *out * self.stiffness);
+        }
+    }
+}

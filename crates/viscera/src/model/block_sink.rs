@@ -1,0 +1,80 @@
+//! Where models put the 3×3 blocks of their tangent when it is assembled.
+
+use fearless_simd::Simd;
+
+use crate::math::{Lanes, MAX_LANES, Mat3, Scalar, Vec3};
+
+/// Takes the 3×3 blocks of a matrix that has a row and a column of blocks for every node.
+pub trait BlockSink<T> {
+    /// Adds `block` at the nodes (`row`, `column`).
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>);
+
+    /// Whether it keeps the blocks of the diagonal only, so that models may leave out the others.
+    fn keeps_diagonal_only(&self) -> bool {
+        false
+    }
+}
+
+/// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
+/// corner `corner` along `axis`. The batch holds `elements` elements, the lanes beyond are padding.
+#[inline(always)]
+pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
+    columns: &[[Vec3<T::Lanes<S>>; CORNERS]; 3],
+    nodes: &[u32],
+    corner: usize,
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    let [x, y, z] = columns;
+    for p in 0..CORNERS {
+        if p == corner || !sink.keeps_diagonal_only() {
+            add_block::<T, S>(&Mat3::from_columns(x[p], y[p], z[p]), nodes, [p, corner], elements, sink);
+        }
+    }
+}
+
+/// Gives one block of each element of a batch to `sink`, that of the two `corners`.
+#[inline(always)]
+pub(crate) fn add_block<T: Scalar, S: Simd>(
+    block: &Mat3<T::Lanes<S>>,
+    nodes: &[u32],
+    corners: [usize; 2],
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    let mut numbers = [[[T::ZERO; MAX_LANES]; 3]; 3];
+    for (stored, column) in numbers.iter_mut().zip(block.columns) {
+        for (stored, component) in stored.iter_mut().zip(column.to_array()) {
+            component.store(stored);
+        }
+    }
+    let [rows, columns] = corners.map(|corner| &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    send(&numbers, rows, columns, elements.min(T::LANES), sink);
+}
+
+/// Gives one block of each of the first `elements` lanes to `sink`. Not inlined: the same for every instruction set.
+#[inline(never)]
+fn send<T: Scalar>(
+    numbers: &[[[T; MAX_LANES]; 3]; 3],
+    rows: &[u32],
+    columns: &[u32],
+    elements: usize,
+    sink: &mut dyn BlockSink<T>,
+) {
+    for lane in 0..elements {
+        let [a, b, c] = numbers.map(|column| Vec3::from(column.map(|component| component[lane])));
+        sink.add(rows[lane], columns[lane], Mat3::from_columns(a, b, c));
+    }
+}
+
+/// The displacement of one corner by one metre along one axis, the others at rest.
+#[inline(always)]
+pub(crate) fn unit_displacement<T: Scalar, S: Simd, const CORNERS: usize>(
+    simd: S,
+    corner: usize,
+    axis: usize,
+) -> [Vec3<T::Lanes<S>>; CORNERS] {
+    let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); CORNERS];
+    corners[corner][axis] = T::Lanes::<S>::splat(simd, T::ONE);
+    corners
+}

@@ -1,0 +1,102 @@
+//! Products of hexahedra with the rotation held, in the form that costs what linear elasticity costs.
+//!
+//! With h = √(s V) R A g at each Gauss point, found once, K dx = Σ σ(sym Σ_q dx_q h_qᵀ) h_p: no rotation is left in it.
+
+use fearless_simd::Simd;
+
+use super::hex::{CorotationalHexes, POINTS};
+use super::hooke::Hooke;
+use super::lane_vector::{load, store};
+use crate::math::{Lanes, Mat3, Real, Scalar, Vec3};
+use crate::model::block_sink::{BlockSink, add_block};
+use crate::model::tet_loop::scatter_corner;
+use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
+
+/// Numbers of the turned gradients of a point.
+const GRADIENTS: usize = 24;
+/// Numbers of a linearized element: gradients, and the turned fibre direction.
+const FIBRE: usize = POINTS * GRADIENTS;
+pub(super) const LINEARIZED: usize = FIBRE + 3;
+
+impl<T: Scalar> CorotationalHexes<T> {
+    #[inline(always)]
+    pub(super) fn linearize_with<S: Simd>(&self, simd: S, x: &[[T; 4]], linearization: &mut [T]) {
+        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
+        let rows = linearization.chunks_exact_mut(LINEARIZED * T::LANES);
+        for ((((nodes, centre), points), law), row) in tables.zip(rows) {
+            let place = gather_corners(simd, x, nodes);
+            let r = self.formulation.rotation(&deformation(&place, &load_gradients::<T, S>(simd, centre)));
+            let turned = row.chunks_exact_mut(GRADIENTS * T::LANES);
+            for (point, turned) in points.chunks_exact(POINT * T::LANES).zip(turned) {
+                let gradients = load_gradients::<T, S>(simd, point);
+                let volume = T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+                let (transport, scale) = self.formulation.transport(&r, &deformation(&place, &gradients));
+                let transport = transport * (volume * scale).sqrt();
+                for corner in 0..8 {
+                    store(transport * gradients[corner], &mut turned[3 * corner * T::LANES..]);
+                }
+            }
+            if let Some((direction, _)) = self.load_law(simd, law).fibre {
+                store(r * direction, &mut row[FIBRE * T::LANES..]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn add_linearized_product_with<S: Simd>(
+        &self,
+        simd: S,
+        linearization: &[T],
+        dx: &[[T; 4]],
+        out: &mut [[T; 4]],
+    ) {
+        let rows = linearization.chunks_exact(LINEARIZED * T::LANES);
+        for ((nodes, law), row) in self.corners.blocks().zip(self.law.blocks()).zip(rows) {
+            let hooke = self.load_turned_law(simd, law, row);
+            let direction = gather_corners(simd, dx, nodes);
+            let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+            for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
+                let gradients = load_gradients::<T, S>(simd, turned);
+                let stress = Mat3::from(hooke.stress(deformation(&direction, &gradients).symmetric_part()));
+                for corner in 0..8 {
+                    forces[corner] += stress * gradients[corner];
+                }
+            }
+            for corner in 0..8 {
+                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn add_linearized_blocks_with<S: Simd>(
+        &self,
+        simd: S,
+        linearization: &[T],
+        sink: &mut dyn BlockSink<T>,
+    ) {
+        let rows = linearization.chunks_exact(LINEARIZED * T::LANES);
+        for (batch, ((nodes, law), row)) in self.corners.blocks().zip(self.law.blocks()).zip(rows).enumerate() {
+            let elements = self.corners.rows() - batch * T::LANES;
+            let hooke = self.load_turned_law(simd, law, row);
+            for q in 0..8 {
+                for p in 0..8 {
+                    if p == q || !sink.keeps_diagonal_only() {
+                        let mut block = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
+                        for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
+                            block += hooke.block(load(simd, turned, 3 * p), load(simd, turned, 3 * q));
+                        }
+                        add_block::<T, S>(&block, nodes, [p, q], elements, sink);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The law of a batch, its fibres turned.
+    #[inline(always)]
+    fn load_turned_law<S: Simd>(&self, simd: S, law: &[T], row: &[T]) -> Hooke<T::Lanes<S>> {
+        let hooke = self.load_law(simd, law);
+        Hooke { fibre: hooke.fibre.map(|(_, stiffness)| (load(simd, row, FIBRE), stiffness)), ..hooke }
+    }
+}

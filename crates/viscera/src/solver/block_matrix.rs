@@ -1,0 +1,104 @@
+use super::LinearOperator;
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::mesh::VolumeMesh;
+use crate::model::BlockSink;
+
+/// A sparse matrix of 3×3 blocks, row after row: a block for every two nodes whose forces know each other.
+#[derive(Clone, Debug)]
+pub struct BlockMatrix<T> {
+    /// The blocks of row n are `starts[n]..starts[n + 1]`.
+    starts: Vec<u32>,
+    /// Columns, ascending within a row.
+    columns: Vec<u32>,
+    blocks: Vec<Mat3<T>>,
+}
+
+impl<T: Scalar> BlockMatrix<T> {
+    /// The zero matrix with the pattern of `mesh`, for models whose forces reach over this many `rings` of cells
+    /// ([`ForceModel::rings`](crate::model::ForceModel::rings)).
+    pub fn new(mesh: &VolumeMesh, rings: usize) -> Self {
+        let mut neighbours = neighbours(mesh);
+        let ring = neighbours.clone();
+        for _ in 1..rings {
+            let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
+            neighbours = neighbours.iter().map(beyond).collect();
+            neighbours.iter_mut().for_each(sort);
+        }
+        let mut starts = vec![0];
+        let mut columns = Vec::new();
+        for row in &neighbours {
+            columns.extend_from_slice(row);
+            starts.push(columns.len() as u32);
+        }
+        let blocks = vec![Mat3::ZERO; columns.len()];
+        Self { starts, columns, blocks }
+    }
+
+    /// Sets every block to zero; the pattern stays.
+    pub fn clear(&mut self) {
+        self.blocks.fill(Mat3::ZERO);
+    }
+
+    /// How many blocks there are.
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The blocks of a row with their columns, ascending.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (u32, &Mat3<T>)> {
+        let span = self.starts[row] as usize..self.starts[row + 1] as usize;
+        self.columns[span.clone()].iter().copied().zip(&self.blocks[span])
+    }
+
+    /// The block at (`row`, `column`); zero outside the pattern.
+    pub fn block(&self, row: usize, column: usize) -> Mat3<T> {
+        self.find(row, column).map_or(Mat3::ZERO, |index| self.blocks[index])
+    }
+
+    fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let (start, end) = (self.starts[row] as usize, self.starts[row + 1] as usize);
+        self.columns[start..end].binary_search(&(column as u32)).ok().map(|offset| start + offset)
+    }
+}
+
+/// The nodes that share a cell with each node, itself included, ascending.
+fn neighbours(mesh: &VolumeMesh) -> Vec<Vec<u32>> {
+    let mut neighbours: Vec<Vec<u32>> = (0..mesh.nodes().len() as u32).map(|node| vec![node]).collect();
+    for cell in 0..mesh.cell_count() {
+        let corners = mesh.cell(cell);
+        for &corner in corners {
+            neighbours[corner as usize].extend_from_slice(corners);
+        }
+    }
+    neighbours.iter_mut().for_each(sort);
+    neighbours
+}
+
+fn sort(nodes: &mut Vec<u32>) {
+    nodes.sort_unstable();
+    nodes.dedup();
+}
+
+impl<T: Scalar> BlockSink<T> for BlockMatrix<T> {
+    /// Panics for two nodes outside the pattern: a block of another mesh, or of a model that reaches further.
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
+        let index = self.find(row as usize, column as usize);
+        assert!(
+            index.is_some(),
+            "nodes {row} and {column} are too far apart: the block is of another mesh, or of a model that reaches further"
+        );
+        index.into_iter().for_each(|index| self.blocks[index] += block);
+    }
+}
+
+impl<T: Scalar> LinearOperator<T> for BlockMatrix<T> {
+    fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        for (row, out) in out.iter_mut().enumerate() {
+            let mut sum = Vec3::ZERO;
+            for (column, block) in self.row(row) {
+                sum += *block * x[column as usize];
+            }
+            *out = sum;
+        }
+    }
+}
