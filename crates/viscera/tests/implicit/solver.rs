@@ -112,7 +112,7 @@ fn negative_curvature_ends_the_solve() {
 #[test]
 fn the_pattern_is_that_of_the_cells() {
     let mesh = TetMesh::box_grid([1, 1, 2], [1.0, 1.0, 2.0]);
-    let matrix = BlockMatrix::<f64>::new(&VolumeMesh::from(mesh.clone()));
+    let matrix = BlockMatrix::<f64>::new(&VolumeMesh::from(mesh.clone()), 1);
     for row in 0..mesh.nodes.len() as u32 {
         let columns: Vec<u32> = matrix.row(row as usize).map(|(column, _)| column).collect();
         let expected: Vec<u32> = (0..mesh.nodes.len() as u32)
