@@ -137,19 +137,25 @@ impl<R: Real> Law<R> for NeoHookean<R> {
     }
 
     // The terms with F and cof F: A (c:dF)² + 2B (F:dF)(c:dF), whose largest eigenvalue is that of a 2×2 matrix, with
-    // F:c = 3J. For c:c = Σσ², of the stretches σ of c, stands 3 (⅓Σσ⁸)^¼: as much at rest and more elsewhere, because cells
-    // feel the largest stretch, and three times as much of it as of the sum.
+    // F:c = 3J. For c:c stands what cells feel of it.
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
         let At { square, cofactor, determinant, shape: [g, slope, curvature], pressure, .. } = self.at_deformation(f);
         let (a, b) = ((self.mu * curvature * square).half() + self.bulk(), self.mu * slope);
-        let eighth_powers = Mat3::from(cofactor.gram()).gram().squared_norm();
-        let area = eighth_powers.sqrt().sqrt() * a.like(3.0_f64.powf(0.75));
+        let area = felt_square(cofactor);
         let trace = a * area + b * determinant * a.like(6.0);
         let apart = (square * area - (determinant * a.like(3.0)).squared()).max(a.zero_like());
         let largest = (trace + (trace.squared() + (b.squared() * apart) * a.like(4.0)).sqrt()).half();
         self.mu.mul_add(g, largest.max(a.zero_like())) + curvature_of_determinant(pressure, determinant, square)
     }
+}
+
+/// 3 (⅓ Σσ⁸)^¼ of the stretches σ of `cofactor`, for c:c = Σσ²: as much at rest and more elsewhere, because a cell feels up
+/// to three times the square of the largest stretch.
+#[inline(always)]
+pub(super) fn felt_square<R: Real>(cofactor: Mat3<R>) -> R {
+    let eighth_powers = Mat3::from(cofactor.gram()).gram().squared_norm();
+    eighth_powers.sqrt().sqrt() * eighth_powers.like(3.0_f64.powf(0.75))
 }
 
 /// Upper bound of p dF : ∂cof F/∂F : dF over |dF| = 1, for J = `determinant` and I_C = `square`.

@@ -11,7 +11,7 @@
 //! Range: any deformation. Nothing is infinite at J = 0, and an inverted element is driven back; J = 1 is kept as well
 //! as λ/μ asks for.
 
-use super::neo_hookean::curvature_of_determinant;
+use super::neo_hookean::{curvature_of_determinant, felt_square};
 use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness};
 use crate::math::{Mat3, Real};
 
@@ -95,7 +95,7 @@ impl<R: Real> Law<R> for StableNeoHookean<R> {
         let share = one / (square + one);
         let shape = mu * (one - share) + (mu * share.squared() * square).double();
         let pressure = lambda * (determinant - one) - mu * mu.like(0.75);
-        lambda.mul_add(cofactor.squared_norm(), shape) + curvature_of_determinant(pressure, determinant, square)
+        lambda.mul_add(felt_square(cofactor), shape) + curvature_of_determinant(pressure, determinant, square)
     }
 }
 
