@@ -11,12 +11,14 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode};
 use viscera::body::Body;
 use viscera::dynamics::implicit::{Implicit, MatrixForm};
-use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
+use viscera::material::{
+    Lame, LinearElastic, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
+};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
 use viscera::model::{
-    Corotational, ForceModel, LinearTensorMass, ModelRecipe, Precision, Scratch, TensorMass, TotalLagrangian,
-    VolumePenalty,
+    Corotational, ForceModel, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, Scratch, TensorMass,
+    TotalLagrangian, VolumePenalty,
 };
 use viscera::solver::Stop;
 use viscera::world::{Integrator, World, WorldConfig};
@@ -190,6 +192,7 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
     let longitudinal = Lame::from_young_poisson(12e3, 0.4).unwrap();
     let linear = || Tissue::uniform(LinearElastic::new(lame));
     let stvk = || Tissue::uniform(StVenantKirchhoff::new(lame));
+    let stable = || Tissue::uniform(StableNeoHookean::new(lame));
     let fibred = || Tissue::uniform(TransverseStVenantKirchhoff::new(lame, [0.0, 0.0, 1.0], longitudinal).unwrap());
 
     for cells in SIZES {
@@ -201,13 +204,15 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
         moved.sort_by(f64::total_cmp);
         let threshold = moved[moved.len() / 2];
 
-        let models: [(&str, Box<dyn ModelRecipe>, Option<f64>); 5] = [
+        let models: [(&str, Box<dyn ModelRecipe>, Option<f64>); 7] = [
             ("linear-tensor-mass", Box::new(LinearTensorMass::new(linear())), None),
             ("tensor-mass", Box::new(TensorMass::new(stvk())), None),
             ("tensor-mass-half-linear", Box::new(TensorMass::new(stvk()).adaptive(threshold)), None),
             // Multiplications and additions of the metric form, counted in its formulae.
             ("total-lagrangian/st-venant-kirchhoff", Box::new(TotalLagrangian::new(stvk())), Some(200.0)),
             ("total-lagrangian/transverse", Box::new(TotalLagrangian::new(fibred())), None),
+            ("total-lagrangian/stable-neo-hookean", Box::new(TotalLagrangian::new(stable())), Some(125.0)),
+            ("nodally-integrated/stable-neo-hookean", Box::new(NodallyIntegrated::new(stable())), None),
         ];
         for (name, recipe, flops) in models {
             let model = T::build_model(recipe.as_ref(), &mesh).unwrap();

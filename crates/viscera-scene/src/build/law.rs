@@ -1,6 +1,6 @@
 use viscera::material::{
-    Fibre, Lame, LawFamily, LawKind, LinearElastic, MaterialError, StVenantKirchhoff, Tissue, TransverseLinear,
-    TransverseStVenantKirchhoff,
+    Fibre, Lame, LawFamily, LawKind, LinearElastic, MaterialError, NeoHookean, StVenantKirchhoff, StableNeoHookean,
+    Tissue, TransverseLinear, TransverseStVenantKirchhoff,
 };
 use viscera::math::Vec3;
 use viscera::mesh::{Point, VolumeMesh};
@@ -71,6 +71,9 @@ fn laws(law: &LawFile, placed: &PlacedMesh, site: &Site) -> Result<Vec<CellLaw>,
     let matrix = matrix.map_err(|error| blame(&error, site))?;
     let Some(fibre) = &law.fibre else { return Ok(vec![CellLaw { matrix, fibre: None }]) };
     let site = site.key("fibre");
+    if matches!(law.kind, LawName::NeoHookean | LawName::StableNeoHookean) {
+        return Err(site.error("this law has no fibres", "take `st-venant-kirchhoff` or `linear`, or leave them out"));
+    }
     let along = match (fibre.young, fibre.factor, fibre.lambda, fibre.mu) {
         (Some(young), ..) => Lame::from_young_poisson(young.0, matrix.poisson()),
         (_, Some(factor), ..) => Lame::new(factor * matrix.lambda, factor * matrix.mu),
@@ -147,6 +150,8 @@ fn assemble(kind: LawName, laws: &[CellLaw]) -> Result<Tissue, MaterialError> {
     match (kind, has_fibres) {
         (LawName::Linear, false) => in_cells(laws, |law| LinearElastic::new(law.matrix)),
         (LawName::StVenantKirchhoff, false) => in_cells(laws, |law| StVenantKirchhoff::new(law.matrix)),
+        (LawName::NeoHookean, _) => in_cells(laws, |law| NeoHookean::new(law.matrix)),
+        (LawName::StableNeoHookean, _) => in_cells(laws, |law| StableNeoHookean::new(law.matrix)),
         (LawName::Linear, true) => {
             in_cells(laws, |law| TransverseLinear { matrix: LinearElastic::new(law.matrix), fibre: fibre(law) })
         }

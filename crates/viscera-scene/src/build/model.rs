@@ -1,7 +1,9 @@
 use viscera::material::Tissue;
 use viscera::mesh::VolumeMesh;
 use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement, Tangent};
-use viscera::model::{Corotational, LinearTensorMass, ModelRecipe, StiffnessWarping, TensorMass, TotalLagrangian};
+use viscera::model::{
+    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+};
 
 use super::site::Site;
 use crate::error::SceneErrors;
@@ -21,12 +23,19 @@ pub(super) fn recipe(
             (VolumeMesh::Hex(_), _) => Box::new(TotalLagrangian::new(tissue)),
             (VolumeMesh::Tet(_), LawName::Linear) => Box::new(LinearTensorMass::new(tissue)),
             (VolumeMesh::Tet(_), LawName::StVenantKirchhoff) => Box::new(TensorMass::new(tissue)),
+            (VolumeMesh::Tet(_), LawName::NeoHookean | LawName::StableNeoHookean) => {
+                Box::new(TotalLagrangian::new(tissue))
+            }
         });
     };
     check_owners(model, &site.key("model"))?;
     Ok(match model.kind {
         ModelName::LinearTensorMass => Box::new(LinearTensorMass::new(tissue)),
         ModelName::TotalLagrangian => Box::new(TotalLagrangian::new(tissue)),
+        ModelName::NodallyIntegrated => {
+            let recipe = NodallyIntegrated::new(tissue);
+            Box::new(model.stabilise.map_or(recipe.clone(), |share| recipe.stabilise(share)))
+        }
         ModelName::StiffnessWarping => Box::new(StiffnessWarping::new(tissue)),
         ModelName::Corotational => Box::new(corotational(model, tissue)),
         ModelName::TensorMass => {
@@ -40,6 +49,7 @@ pub(super) fn recipe(
 fn check_owners(model: &ModelFile, site: &Site) -> Result<(), SceneErrors> {
     let keys = [
         ("adaptive", model.adaptive.is_some(), ModelName::TensorMass, "tensor-mass"),
+        ("stabilise", model.stabilise.is_some(), ModelName::NodallyIntegrated, "nodally-integrated"),
         ("rotation", model.rotation.is_some(), ModelName::Corotational, "corotational"),
         ("strain-displacement", model.strain_displacement.is_some(), ModelName::Corotational, "corotational"),
         ("volume", model.volume.is_some(), ModelName::Corotational, "corotational"),

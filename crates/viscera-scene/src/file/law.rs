@@ -40,6 +40,10 @@ pub enum LawName {
     Linear,
     /// St Venant–Kirchhoff: right under large rotations, for moderate strain.
     StVenantKirchhoff,
+    /// Neo-Hookean, shape and volume apart: for large strain, and for nearly incompressible tissue.
+    NeoHookean,
+    /// Stable neo-Hookean: bears any strain, and turns back when it is inverted.
+    StableNeoHookean,
 }
 
 /// Fibres: where they run, and how stiff the tissue is along them.

@@ -18,6 +18,10 @@ pub struct ModelFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub adaptive: Option<Length>,
+    /// Share of the shear modulus that `nodally-integrated` leaves in the cells, against wrinkles; by default 0.01.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub stabilise: Option<f64>,
     /// How `corotational` finds the rotation of a cell; by default "polar".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationName>,
@@ -42,6 +46,9 @@ pub enum ModelName {
     TensorMass,
     /// Stress from the deformation of each cell; every law, tetrahedra and hexahedra.
     TotalLagrangian,
+    /// Stress from the mean deformation at each node: does not lock, however close to incompressible; tetrahedra, every
+    /// law but the linear ones.
+    NodallyIntegrated,
     /// The linear law turned with each cell (Nesme et al. 2005); tetrahedra and hexahedra. Turns back when inverted.
     Corotational,
     /// The linear law turned at each node (Müller et al. 2002); tetrahedra. For comparison: its forces do not balance.

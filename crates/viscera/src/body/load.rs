@@ -1,6 +1,7 @@
 use crate::curve::Curve;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{LoadTriangle, Region, RegionError, VolumeMesh};
+use crate::model::BlockSink;
 
 /// What pulls or presses on a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +68,37 @@ impl<T: Scalar> NodalLoads<T> {
     pub(crate) fn add(&self, time: f64, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {
         for load in &self.loads {
             load.add(time, x, removed, out);
+        }
+    }
+}
+
+impl<T: Scalar> NodalLoads<T> {
+    /// Adds −∂f_ext/∂x [N/m] of the loads that follow the surface, times `factor`, to `sink`: its symmetric part, which is all
+    /// of it but at the rim of the loaded surface.
+    pub(crate) fn add_blocks(
+        &self,
+        time: f64,
+        x: &[Vec3<T>],
+        removed: &[bool],
+        factor: f64,
+        sink: &mut dyn BlockSink<T>,
+    ) {
+        for load in &self.loads {
+            let NodalLoad::Pressure { faces, pressure } = load else { continue };
+            let pressure = factor * pressure.at(time);
+            for face in faces.iter().filter(|face| !removed[face.cell as usize]) {
+                let [a, b, c] = face.nodes.map(|node| x[node as usize]);
+                // (b − a)×(c − a) changes by v×w when a corner moves by v, with w the edge opposite to it
+                let half = T::from_f64(-0.5 * pressure * face.weight / 6.0);
+                for (opposite, column) in [b - c, c - a, a - b].into_iter().zip(face.nodes) {
+                    let axes = Mat3::IDENTITY.columns;
+                    let block = Mat3 { columns: axes.map(|axis: Vec3<T>| opposite.cross(axis) * half) };
+                    for row in face.nodes {
+                        sink.add(row, column, block);
+                        sink.add(column, row, block.transpose());
+                    }
+                }
+            }
         }
     }
 }

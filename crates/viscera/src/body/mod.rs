@@ -2,11 +2,13 @@
 
 mod deformation;
 mod error;
+mod guide;
 mod load;
 mod simulated;
 mod state;
 
 pub use error::BodyError;
+pub(crate) use guide::Guides;
 pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
@@ -51,6 +53,7 @@ pub struct Body {
     pub(crate) stiffness_damping: f64,
     pub(crate) fixed: Vec<Region>,
     pub(crate) prescribed: Vec<(Region, Curve<Vec3<f64>>)>,
+    pub(crate) guided: Vec<(Region, [f64; 3], Curve<f64>)>,
     pub(crate) loads: Vec<Load>,
     pub(crate) loose_pieces: LoosePieces,
 }
@@ -78,6 +81,7 @@ impl Body {
             stiffness_damping: 0.0,
             fixed: Vec::new(),
             prescribed: Vec::new(),
+            guided: Vec::new(),
             loads: Vec::new(),
             loose_pieces: LoosePieces::default(),
         }
@@ -136,6 +140,19 @@ impl Body {
     /// one counts; fixed regions count before prescribed ones.
     pub fn prescribe(mut self, region: Region, displacement: Curve<Vec3<f64>>) -> Self {
         self.prescribed.push((region, displacement));
+        self
+    }
+
+    /// Lets the nodes of a region move across `normal` only: a symmetry plane, a roller. Where slides of several normals meet,
+    /// nodes move along their line, or not at all.
+    pub fn slide(self, region: Region, normal: [f64; 3]) -> Self {
+        self.prescribe_along(region, normal, Curve::constant(0.0))
+    }
+
+    /// Moves the nodes of a region along `normal`: that part of their displacement from rest [m] along time [s]. Across it
+    /// they follow the forces. Fixed and prescribed regions count before it.
+    pub fn prescribe_along(mut self, region: Region, normal: [f64; 3], displacement: Curve<f64>) -> Self {
+        self.guided.push((region, normal, displacement));
         self
     }
 

@@ -1,9 +1,10 @@
-use super::{Body, BodyError, BodyState, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
+use super::{Body, BodyError, BodyState, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
 use crate::model::{ModelKind, Precision, Scratch};
+use crate::solver::Filter;
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -23,6 +24,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) stiffness_damping: T,
     pub(crate) rest: Vec<Vec3<T>>,
     pub(crate) prescribed: Vec<Curve<Vec3<f64>>>,
+    pub(crate) guides: Guides,
     pub(crate) loads: NodalLoads<T>,
     pub(crate) loose_pieces: LoosePieces,
     /// Cells at each node: those of node n are `cells_at_nodes.1[starts[n]..starts[n + 1]]`.
@@ -66,6 +68,7 @@ impl<T: Scalar> SimulatedBody<T> {
             stiffness_damping,
             fixed,
             prescribed,
+            guided,
             loads,
             loose_pieces,
         } = body;
@@ -85,7 +88,9 @@ impl<T: Scalar> SimulatedBody<T> {
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
-        let mut motions = vec![NodeMotion::Free; mesh.nodes().len()];
+        let (guides, guide_at_nodes) = Guides::new(&name, guided, &mesh)?;
+        let guided = |guide: Option<u32>| guide.map_or(NodeMotion::Free, NodeMotion::Guided);
+        let mut motions: Vec<_> = guide_at_nodes.into_iter().map(guided).collect();
         let mut curves = Vec::new();
         for (number, (region, curve)) in prescribed.into_iter().enumerate() {
             mark(&mut motions, &region, &mesh, NodeMotion::Prescribed(number as u32))
@@ -123,6 +128,7 @@ impl<T: Scalar> SimulatedBody<T> {
             mesh,
             corner_masses,
             cell_volumes,
+            guides,
             loads,
             loose_pieces,
             cells_at_nodes,
@@ -166,12 +172,17 @@ impl<T: Scalar> SimulatedBody<T> {
         &self.state.velocities
     }
 
+    /// The directions in which forces move a node.
+    pub(crate) fn free_directions(&self, node: usize) -> Filter<T> {
+        free_directions(&self.guides, self.state.motions[node])
+    }
+
     /// Sets the velocities of the free nodes [m/s], for a body that starts in motion.
     pub fn set_velocities(&mut self, velocity: impl Fn(Vec3<f64>) -> Vec3<f64>) {
         for (node, motion) in self.state.motions.iter().enumerate() {
-            if *motion == NodeMotion::Free {
-                self.state.velocities[node] = velocity(self.state.positions[node].cast()).cast();
-            }
+            let filter = free_directions(&self.guides, *motion);
+            let wanted = velocity(self.state.positions[node].cast()).cast();
+            self.state.velocities[node] = filter.merge(wanted, self.state.velocities[node]);
         }
         self.state.past.is_known = false;
     }
@@ -179,9 +190,9 @@ impl<T: Scalar> SimulatedBody<T> {
     /// Sets the positions of the free nodes [m], for a body that starts deformed.
     pub fn set_positions(&mut self, position: impl Fn(Vec3<f64>) -> Vec3<f64>) {
         for (node, motion) in self.state.motions.iter().enumerate() {
-            if *motion == NodeMotion::Free {
-                self.state.positions[node] = position(self.state.positions[node].cast()).cast();
-            }
+            let filter = free_directions(&self.guides, *motion);
+            let wanted = position(self.state.positions[node].cast()).cast();
+            self.state.positions[node] = filter.merge(wanted, self.state.positions[node]);
         }
         self.state.past.is_known = false;
         self.state.positions_changed();
@@ -229,6 +240,14 @@ impl<T: Scalar> SimulatedBody<T> {
             *force = gravity * mass;
         }
         self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
+    }
+}
+
+fn free_directions<T: Scalar>(guides: &Guides, motion: NodeMotion) -> Filter<T> {
+    match motion {
+        NodeMotion::Free => Filter::Free,
+        NodeMotion::Guided(guide) => guides.filter(guide),
+        _ => Filter::Held,
     }
 }
 

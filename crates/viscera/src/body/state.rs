@@ -10,6 +10,8 @@ pub enum NodeMotion {
     Fixed,
     /// Along the body's prescribed motion of this number.
     Prescribed(u32),
+    /// By the forces on it, but for the directions of the body's guide of this number.
+    Guided(u32),
     /// With the tip of the world's instrument of this number.
     Held(u32),
     /// No longer: every cell around it was removed.
@@ -99,6 +101,11 @@ impl<T: Scalar> Clone for BodyState<T> {
 }
 
 impl<T: Scalar> BodyState<T> {
+    /// How many rings of cells around a node its force depends on.
+    pub(crate) fn rings(&self) -> usize {
+        self.models.iter().map(|model| model.rings()).max().unwrap_or(1)
+    }
+
     /// Says that the positions were changed: forces and frequency have to be found anew.
     pub(crate) fn positions_changed(&mut self) {
         self.forces_are_current = false;

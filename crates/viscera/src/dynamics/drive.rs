@@ -13,7 +13,8 @@ pub struct Drive<'a, T> {
 }
 
 impl<T: Scalar> Drive<'_, T> {
-    /// Where a node has to be at the end of the step [m]; none for one that forces move.
+    /// Where a node has to be at the end of the step [m], in the directions that are not left to the forces; none for one that
+    /// forces move.
     pub(super) fn target(&self, body: &SimulatedBody<T>, node: usize) -> Option<Vec3<T>> {
         let state = &body.state;
         match state.motions[node] {
@@ -22,6 +23,7 @@ impl<T: Scalar> Drive<'_, T> {
             NodeMotion::Prescribed(curve) => {
                 Some(body.rest[node] + body.prescribed[curve as usize].at(self.end).cast())
             }
+            NodeMotion::Guided(guide) => Some(body.rest[node] + body.guides.displacement(guide, self.end).cast()),
             NodeMotion::Held(instrument) => Some(state.grips[node] + self.tips[instrument as usize].cast()),
         }
     }

@@ -11,9 +11,10 @@
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
 
 use super::Drive;
-use crate::body::{NodeMotion, SimulatedBody};
+use crate::body::SimulatedBody;
 use crate::math::Scalar;
 use crate::model::Scratch;
+use crate::solver::Filter;
 
 /// Share of the stability limit 2/ω_max that automatic sub-steps use: room for the tissue to stiffen within a step.
 const SAFETY: f64 = 0.9;
@@ -50,16 +51,19 @@ pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_
 fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
     let (step, half) = (T::from_f64(dt), T::from_f64(0.5 * dt));
     for node in 0..body.state.positions.len() {
-        let target = drive.target(body, node);
+        let (target, filter) = (drive.target(body, node), body.free_directions(node));
         let state = &mut body.state;
-        if let Some(target) = target {
+        if let (Some(target), Filter::Held) = (target, filter) {
             state.velocities[node] = (target - state.positions[node]) / step;
             state.positions[node] = target;
             continue;
         }
         let force = body.external_forces[node] - state.internal_forces[node];
         let acceleration = force / state.masses[node] - state.velocities[node] * body.damping;
-        let velocity = acceleration.mul_add(half, state.velocities[node]);
+        let mut velocity = acceleration.mul_add(half, state.velocities[node]);
+        if let Some(target) = target {
+            velocity = filter.merge(velocity, (target - state.positions[node]) / step);
+        }
         state.velocities[node] = velocity;
         state.positions[node] = velocity.mul_add(step, state.positions[node]);
     }
@@ -69,12 +73,13 @@ fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive
 fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
     let half = T::from_f64(0.5 * dt);
     let damped = T::ONE / (T::ONE + half * body.damping);
-    let state = &mut body.state;
-    for node in 0..state.positions.len() {
-        if state.motions[node] == NodeMotion::Free {
+    for node in 0..body.state.positions.len() {
+        let filter = body.free_directions(node);
+        let state = &mut body.state;
+        if filter != Filter::Held {
             let force = body.external_forces[node] - state.internal_forces[node];
             let velocity = force.mul_add(half / state.masses[node], state.velocities[node]);
-            state.velocities[node] = velocity * damped;
+            state.velocities[node] = filter.merge(velocity * damped, state.velocities[node]);
         }
     }
 }

@@ -3,5 +3,6 @@
 mod drive;
 pub mod explicit;
 pub mod implicit;
+pub mod quasi_static;
 
 pub use drive::Drive;

@@ -6,18 +6,22 @@
 mod error;
 mod lame;
 mod linear;
+mod neo_hookean;
 mod parameter;
 mod registry;
 mod st_venant_kirchhoff;
+mod stable_neo_hookean;
 mod tissue;
 mod transverse;
 
 pub use error::MaterialError;
 pub use lame::Lame;
 pub use linear::LinearElastic;
+pub use neo_hookean::NeoHookean;
 pub use parameter::{Parameter, ParameterRange};
 pub use registry::{LawKind, LawVisitor};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use stable_neo_hookean::StableNeoHookean;
 pub use tissue::Tissue;
 pub use transverse::{Fibre, TransverseLinear, TransverseStVenantKirchhoff};
 

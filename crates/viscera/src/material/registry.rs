@@ -1,6 +1,9 @@
 //! The only list of laws.
 
-use super::{LawFamily, LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff};
+use super::{
+    LawFamily, LinearElastic, NeoHookean, StVenantKirchhoff, StableNeoHookean, TransverseLinear,
+    TransverseStVenantKirchhoff,
+};
 
 /// Something that is done for one law, whichever it is: the way from a [`LawKind`] back to its type.
 pub trait LawVisitor {
@@ -50,7 +53,7 @@ macro_rules! laws {
     };
 }
 
-laws!(LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff);
+laws!(LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff, NeoHookean, StableNeoHookean,);
 
 impl std::fmt::Display for LawKind {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -64,6 +64,11 @@ impl<R: Real> Real for Dual<R> {
         Self::new(self.value.ln(), self.derivative / self.value)
     }
     #[inline(always)]
+    fn cbrt(self) -> Self {
+        let root = self.value.cbrt();
+        Self::new(root, self.derivative / (root.squared() * root.like(3.0)))
+    }
+    #[inline(always)]
     fn less_than(self, other: Self) -> Self::Mask {
         self.value.less_than(other.value)
     }

@@ -161,6 +161,12 @@ macro_rules! impl_lanes {
                 Self::from_slice(self.token(), &values.map(<$scalar>::ln))
             }
             #[inline(always)]
+            fn cbrt(self) -> Self {
+                let mut values = [0.0; $count];
+                self.store_slice(&mut values);
+                Self::from_slice(self.token(), &values.map(<$scalar>::cbrt))
+            }
+            #[inline(always)]
             fn less_than(self, other: Self) -> Self::Mask {
                 self.simd_lt(other)
             }

@@ -55,6 +55,12 @@ impl<R: Real> Mat3<R> {
         let [a, b, c] = self.columns;
         Self::from_columns(b.cross(c), c.cross(a), a.cross(b))
     }
+    /// Derivative of cof A along `direction`.
+    #[inline(always)]
+    pub fn cofactor_along(self, direction: Self) -> Self {
+        let ([a, b, c], [da, db, dc]) = (self.columns, direction.columns);
+        Self::from_columns(db.cross(c) + b.cross(dc), dc.cross(a) + c.cross(da), da.cross(b) + a.cross(db))
+    }
     /// A⁻¹; infinite or NaN entries where A is singular.
     #[inline(always)]
     pub fn inverse(self) -> Self {

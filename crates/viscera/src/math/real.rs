@@ -39,6 +39,8 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Natural logarithm, lane by lane where the hardware has none.
     fn ln(self) -> Self;
+    /// Cube root, of negative numbers too; lane by lane where the hardware has none.
+    fn cbrt(self) -> Self;
     /// Whether `self < other`.
     fn less_than(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, `if_false` elsewhere.
@@ -103,6 +105,10 @@ macro_rules! impl_real_for_scalar {
             #[inline(always)]
             fn ln(self) -> Self {
                 <$scalar>::ln(self)
+            }
+            #[inline(always)]
+            fn cbrt(self) -> Self {
+                <$scalar>::cbrt(self)
             }
             #[inline(always)]
             fn less_than(self, other: Self) -> bool {

@@ -6,6 +6,7 @@ pub mod corotational;
 mod error;
 pub mod frequency;
 pub mod linear_tensor_mass;
+pub mod nodally_integrated;
 mod precision;
 mod registry;
 pub mod tensor_mass;
@@ -17,6 +18,7 @@ pub use block_sink::BlockSink;
 pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
+pub use nodally_integrated::NodallyIntegrated;
 pub use precision::Precision;
 pub use registry::{Claims, ModelInfo, ModelKind};
 pub use tensor_mass::TensorMass;
@@ -71,6 +73,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Whether the node follows the full law at displacement `u` [m]; false where an adaptive model is linear.
     fn is_nonlinear_at(&self, _displacement: Vec3<T>) -> bool {
         true
+    }
+
+    /// How many rings of cells around a node its force depends on: 1, unless the model averages over neighbours.
+    fn rings(&self) -> usize {
+        1
     }
 
     /// Size of the numbers that one evaluation of the forces reads from the model [bytes].

@@ -1,6 +1,8 @@
 //! The only list of force models.
 
-use super::{Corotational, LinearTensorMass, ModelRecipe, StiffnessWarping, TensorMass, TotalLagrangian};
+use super::{
+    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 
 /// What a user should know about a model before choosing it.
@@ -106,6 +108,7 @@ models!(
     LinearTensorMass: whatever_the_cells,
     TensorMass: whatever_the_cells,
     TotalLagrangian: whatever_the_cells,
+    NodallyIntegrated: NodallyIntegrated::claims,
     Corotational: Corotational::claims,
     StiffnessWarping: StiffnessWarping::claims,
 );

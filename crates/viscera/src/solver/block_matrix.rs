@@ -3,7 +3,7 @@ use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::VolumeMesh;
 use crate::model::BlockSink;
 
-/// A sparse matrix of 3×3 blocks, row after row: a block for every two nodes that share a cell.
+/// A sparse matrix of 3×3 blocks, row after row: a block for every two nodes whose forces know each other.
 #[derive(Clone, Debug)]
 pub struct BlockMatrix<T> {
     /// The blocks of row n are `starts[n]..starts[n + 1]`.
@@ -14,21 +14,19 @@ pub struct BlockMatrix<T> {
 }
 
 impl<T: Scalar> BlockMatrix<T> {
-    /// The zero matrix with the pattern of `mesh`.
-    pub fn new(mesh: &VolumeMesh) -> Self {
-        let nodes = mesh.nodes().len();
-        let mut neighbours: Vec<Vec<u32>> = (0..nodes as u32).map(|node| vec![node]).collect();
-        for cell in 0..mesh.cell_count() {
-            let corners = mesh.cell(cell);
-            for &corner in corners {
-                neighbours[corner as usize].extend_from_slice(corners);
-            }
+    /// The zero matrix with the pattern of `mesh`, for models whose forces reach over this many `rings` of cells
+    /// ([`ForceModel::rings`](crate::model::ForceModel::rings)).
+    pub fn new(mesh: &VolumeMesh, rings: usize) -> Self {
+        let mut neighbours = neighbours(mesh);
+        let ring = neighbours.clone();
+        for _ in 1..rings {
+            let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
+            neighbours = neighbours.iter().map(beyond).collect();
+            neighbours.iter_mut().for_each(sort);
         }
         let mut starts = vec![0];
         let mut columns = Vec::new();
-        for row in &mut neighbours {
-            row.sort_unstable();
-            row.dedup();
+        for row in &neighbours {
             columns.extend_from_slice(row);
             starts.push(columns.len() as u32);
         }
@@ -63,11 +61,32 @@ impl<T: Scalar> BlockMatrix<T> {
     }
 }
 
+/// The nodes that share a cell with each node, itself included, ascending.
+fn neighbours(mesh: &VolumeMesh) -> Vec<Vec<u32>> {
+    let mut neighbours: Vec<Vec<u32>> = (0..mesh.nodes().len() as u32).map(|node| vec![node]).collect();
+    for cell in 0..mesh.cell_count() {
+        let corners = mesh.cell(cell);
+        for &corner in corners {
+            neighbours[corner as usize].extend_from_slice(corners);
+        }
+    }
+    neighbours.iter_mut().for_each(sort);
+    neighbours
+}
+
+fn sort(nodes: &mut Vec<u32>) {
+    nodes.sort_unstable();
+    nodes.dedup();
+}
+
 impl<T: Scalar> BlockSink<T> for BlockMatrix<T> {
-    /// Panics for two nodes that share no cell: a block of another mesh.
+    /// Panics for two nodes outside the pattern: a block of another mesh, or of a model that reaches further.
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
         let index = self.find(row as usize, column as usize);
-        assert!(index.is_some(), "nodes {row} and {column} share no cell: the block is of another mesh");
+        assert!(
+            index.is_some(),
+            "nodes {row} and {column} are too far apart: the block is of another mesh, or of a model that reaches further"
+        );
         index.into_iter().for_each(|index| self.blocks[index] += block);
     }
 }

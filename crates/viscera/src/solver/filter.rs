@@ -28,6 +28,16 @@ impl<T: Scalar> Filter<T> {
         }
     }
 
+    /// The same in another precision.
+    pub fn cast<U: Scalar>(&self) -> Filter<U> {
+        match self {
+            Self::Free => Filter::Free,
+            Self::Plane(p) => Filter::Plane(p.cast()),
+            Self::Line(p, q) => Filter::Line(p.cast(), q.cast()),
+            Self::Held => Filter::Held,
+        }
+    }
+
     /// S v + (I − S) prescribed.
     #[inline]
     pub fn merge(&self, v: Vec3<T>, prescribed: Vec3<T>) -> Vec3<T> {

@@ -1,15 +1,22 @@
-//! Linear systems with a block of three unknowns for every node: conjugate gradient with filters, block rows.
+//! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient, and the seam to
+//! factorisations.
 
 mod block_jacobi;
 mod block_matrix;
 mod conjugate_gradient;
 mod filter;
+mod iterative;
+mod linear_solver;
+mod system;
 
 pub use block_jacobi::BlockJacobi;
 pub use block_matrix::BlockMatrix;
 pub(crate) use conjugate_gradient::dot;
 pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, Stop};
 pub use filter::Filter;
+pub use iterative::Iterative;
+pub use linear_solver::{LinearSolver, SolverError};
+pub use system::System;
 
 use crate::math::{Scalar, Vec3};
 

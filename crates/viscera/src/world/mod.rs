@@ -4,6 +4,7 @@ mod config;
 mod error;
 mod observables;
 mod snapshot;
+mod statics;
 mod step;
 mod step_implicit;
 
@@ -76,7 +77,7 @@ impl<T: Scalar> World<T> {
             if settings.scheme.needs_past() {
                 body.reserve_past();
             }
-            self.implicit.push(ImplicitMemory::new(body.mesh(), &settings));
+            self.implicit.push(ImplicitMemory::new(body.mesh(), body.state.rings(), &settings));
         }
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));

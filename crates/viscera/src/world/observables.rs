@@ -147,8 +147,9 @@ impl<T: Scalar> SimulatedBody<T> {
             momentum += v * m;
             angular_momentum += x.cross(v) * m;
             net_internal_force += state.internal_forces[node].cast();
-            if matches!(state.motions[node], NodeMotion::Fixed | NodeMotion::Prescribed(_)) {
-                reaction += (state.internal_forces[node] - self.external_forces[node]).cast();
+            if matches!(state.motions[node], NodeMotion::Fixed | NodeMotion::Prescribed(_) | NodeMotion::Guided(_)) {
+                let force = state.internal_forces[node] - self.external_forces[node];
+                reaction += (force - self.free_directions(node).apply(force)).cast();
             }
             let alive = state.motions[node] != NodeMotion::Retired;
             if alive && state.models[0].is_nonlinear_at(state.positions[node] - self.rest[node]) {

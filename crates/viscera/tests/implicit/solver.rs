@@ -13,7 +13,7 @@ use super::support::Vector;
 fn matrix(coupling: f64) -> (BlockMatrix<f64>, usize) {
     let mesh = VolumeMesh::from(TetMesh::box_grid([2, 1, 1], [2.0, 1.0, 1.0]));
     let nodes = mesh.nodes().len();
-    let mut matrix = BlockMatrix::new(&mesh);
+    let mut matrix = BlockMatrix::new(&mesh, 1);
     for node in 0..nodes as u32 {
         let own = Mat3::diagonal(4.0) + Vector::new(1.0, 0.5, -0.2).outer(Vector::new(1.0, 0.5, -0.2));
         matrix.add(node, node, own);
@@ -112,7 +112,7 @@ fn negative_curvature_ends_the_solve() {
 #[test]
 fn the_pattern_is_that_of_the_cells() {
     let mesh = TetMesh::box_grid([1, 1, 2], [1.0, 1.0, 2.0]);
-    let matrix = BlockMatrix::<f64>::new(&VolumeMesh::from(mesh.clone()));
+    let matrix = BlockMatrix::<f64>::new(&VolumeMesh::from(mesh.clone()), 1);
     for row in 0..mesh.nodes.len() as u32 {
         let columns: Vec<u32> = matrix.row(row as usize).map(|(column, _)| column).collect();
         let expected: Vec<u32> = (0..mesh.nodes.len() as u32)

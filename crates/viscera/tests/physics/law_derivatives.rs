@@ -54,10 +54,13 @@ fn stress_is_the_derivative_of_energy() {
                 assert!((work - exact).abs() <= 1e-13 * scale, "{}: {work} is not {exact} at {f:?}", L::NAME);
 
                 // five points: the error is h⁴ times the fifth derivative, rounding 1e-16 ψ/h
-                let h = 1e-3;
+                let h: f64 = 1e-3;
                 let energy = |s: f64| law.energy(&(f + df * (s * h)));
                 let slope = (8.0 * (energy(1.0) - energy(-1.0)) - (energy(2.0) - energy(-2.0))) / (12.0 * h);
-                assert!((work - slope).abs() <= 1e-9 * scale, "{}: {work} is not {slope} at {f:?}", L::NAME);
+                // near rest, where the stress is small, of J^(−2/3) a fifth derivative of some ten moduli is left
+                let stiffness = law.tangent(&f, &df).squared_norm().sqrt() * df.squared_norm().sqrt();
+                let bound = 1e-9 * scale + 10.0 * h.powi(4) * stiffness;
+                assert!((work - slope).abs() <= bound, "{}: {work} is not {slope} at {f:?}", L::NAME);
             }
         }
     }

@@ -18,6 +18,7 @@ mod model_gradient;
 mod model_invariance;
 mod model_refusal;
 mod model_removal;
+mod reference_compressible;
 mod reference_corotational_beam;
 mod reference_patch;
 mod reference_single_elements;

@@ -15,6 +15,11 @@ fn moved(x: &[Vector], dx: &[Vector], s: f64) -> Vec<Vector> {
     x.iter().zip(dx).map(|(&x, &dx)| x + dx * s).collect()
 }
 
+/// What five points leave: roundings; of J^(−2/3) also h⁴/30 of its fifth derivative, 2e-8.
+fn polynomial_or_not(name: &str) -> f64 {
+    if name.contains("of neo-hookean") { 1e-7 } else { 1e-9 }
+}
+
 #[test]
 fn rest_holds_itself() {
     for mesh in meshes() {
@@ -57,7 +62,7 @@ fn forces_are_the_gradient_of_the_energy() {
                 }
             }
             // |δ|³ has a kink in its third derivative, where five points keep h² of their error
-            let tolerance = if named.name == "volume penalty" { 1e-4 } else { 1e-9 };
+            let tolerance = if named.name == "volume penalty" { 1e-4 } else { polynomial_or_not(&named.name) };
             assert_near(&named.model.forces(&x), &slopes, tolerance, &named.name);
         }
     }
@@ -75,7 +80,8 @@ fn products_are_the_derivative_of_forces() {
                 continue;
             }
             // δ|δ| is no polynomial where δ changes its sign: a step so small that hardly any cell does
-            let (h, tolerance) = if named.name == "volume penalty" { (1e-4 * h, 1e-6) } else { (h, 1e-9) };
+            let (h, tolerance) =
+                if named.name == "volume penalty" { (1e-4 * h, 1e-6) } else { (h, polynomial_or_not(&named.name)) };
             let forces = |s: f64| named.model.forces(&moved(&x, &dx, s * h));
             let (back2, back, ahead, ahead2) = (forces(-2.0), forces(-1.0), forces(1.0), forces(2.0));
             let slopes: Vec<_> =

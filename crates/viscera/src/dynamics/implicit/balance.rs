@@ -3,7 +3,6 @@
 use super::Scheme;
 use super::step::Step;
 use crate::math::{Scalar, Vec3};
-use crate::solver::Filter;
 
 /// Norms of the forces on free nodes [N].
 #[derive(Clone, Copy, Debug)]
@@ -103,11 +102,9 @@ impl<T: Scalar> Step<'_, T> {
             let external = self.body.external_forces[node];
             let inertial = (memory.increment[node] - memory.coast[node]) * (inertia * state.masses[node]);
             memory.lack[node] = external - state.internal_forces[node] - memory.damping[node] - inertial;
-            if memory.filters[node] == Filter::Free {
-                let forces = [memory.lack[node], inertial, external, state.internal_forces[node]];
-                for (square, force) in squares.iter_mut().zip(forces) {
-                    *square += force.squared_norm().to_f64();
-                }
+            let forces = [memory.lack[node], inertial, external, state.internal_forces[node]];
+            for (square, force) in squares.iter_mut().zip(forces) {
+                *square += memory.filters[node].apply(force).squared_norm().to_f64();
             }
         }
         let [lack, inertial, external, internal] = squares.map(f64::sqrt);

@@ -37,8 +37,8 @@ pub struct ImplicitMemory<T> {
 }
 
 impl<T: Scalar> ImplicitMemory<T> {
-    /// Memory for a body of `mesh`.
-    pub fn new(mesh: &VolumeMesh, settings: &Implicit) -> Self {
+    /// Memory for a body of `mesh`, of models that reach over this many `rings` of cells.
+    pub fn new(mesh: &VolumeMesh, rings: usize, settings: &Implicit) -> Self {
         let nodes = mesh.nodes().len();
         let zeros = || vec![Vec3::ZERO; nodes];
         Self {
@@ -55,7 +55,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             masses: vec![T::ZERO; nodes],
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
-            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh)),
+            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
             history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
         }

@@ -4,7 +4,7 @@ use super::ImplicitReport;
 use super::balance::Balance;
 use super::step::Step;
 use crate::math::{Scalar, Vec3};
-use crate::solver::{Filter, dot};
+use crate::solver::dot;
 
 /// The line search is content when the work of the residual along the correction has fallen below this share.
 const CONTENT: f64 = 0.9;
@@ -61,8 +61,8 @@ impl<T: Scalar> Step<'_, T> {
         let memory = &mut *self.memory;
         let mut arrived = true;
         for node in 0..memory.prescribed.len() {
-            let held = memory.filters[node] == Filter::Held;
-            let rest = if held { memory.coast[node] - memory.increment[node] } else { Vec3::ZERO };
+            let rest = memory.coast[node] - memory.increment[node];
+            let rest = rest - memory.filters[node].apply(rest);
             memory.prescribed[node] = rest;
             arrived &= rest.norm() <= memory.coast[node].norm() * (T::EPSILON + T::EPSILON);
         }

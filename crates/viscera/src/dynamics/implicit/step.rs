@@ -50,16 +50,16 @@ impl<T: Scalar> Step<'_, T> {
         }
         let dt = T::from_f64(self.dt);
         for node in 0..self.memory.start.len() {
-            let target = self.drive.target(self.body, node);
+            let (target, filter) = (self.drive.target(self.body, node), self.body.free_directions(node));
             let state = &self.body.state;
             let position = state.positions[node];
             let memory = &mut *self.memory;
             memory.increment[node] = Vec3::ZERO;
             memory.coast_velocities[node] = Vec3::ZERO;
-            memory.filters[node] = Filter::Held;
+            memory.filters[node] = filter;
             memory.coast[node] = match target {
-                Some(target) => target - position,
-                None => {
+                Some(target) if filter == Filter::Held => target - position,
+                _ => {
                     let past = state.past.is_known.then(|| Past {
                         increment: position - state.past.positions[node],
                         velocity: state.past.velocities[node],
@@ -69,9 +69,8 @@ impl<T: Scalar> Step<'_, T> {
                         if needs_acceleration { memory.lack[node] / state.masses[node] } else { Vec3::ZERO };
                     let start = Start { velocity: state.velocities[node], acceleration, past };
                     let coast = self.settings.scheme.coast(&start, dt);
-                    memory.filters[node] = Filter::Free;
                     memory.coast_velocities[node] = coast.velocity;
-                    coast.increment
+                    target.map_or(coast.increment, |target| filter.merge(coast.increment, target - position))
                 }
             };
         }
@@ -80,11 +79,10 @@ impl<T: Scalar> Step<'_, T> {
     /// v⁺ for the δ that is known.
     pub(super) fn end_velocity(&self, node: usize) -> Vec3<T> {
         let memory = &*self.memory;
-        match memory.filters[node] {
-            Filter::Held => memory.increment[node] / T::from_f64(self.dt),
-            _ => (memory.increment[node] - memory.coast[node])
-                .mul_add(T::from_f64(self.numbers.velocity / self.dt), memory.coast_velocities[node]),
-        }
+        let driven = memory.increment[node] / T::from_f64(self.dt);
+        let free = (memory.increment[node] - memory.coast[node])
+            .mul_add(T::from_f64(self.numbers.velocity / self.dt), memory.coast_velocities[node]);
+        memory.filters[node].merge(free, driven)
     }
 
     /// δ grows by `length` corrections.

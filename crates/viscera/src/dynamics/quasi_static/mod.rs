@@ -1,0 +1,127 @@
+//! Equilibrium under loads: Newton's method with load steps and a line search.
+//!
+//! Sought is x with f_int(x) = f_ext(x) in the free directions. The load is put on in steps, each a share s of the way
+//! from where the body is (s = 0) to the whole load (s = 1):
+//!
+//! f_int(x) = (1 − s) f_int(x_start) + s f_ext(x),   x_held = (1 − s) x_start + s x_target
+//!
+//! so that any state is a start. The first try is the whole load; a share that fails is halved, one that succeeds is doubled.
+//!
+//! One iteration solves K p = r with the tangent K(x), shifted along its diagonal until it is positive definite, so that p
+//! lowers the energy W(x) − f_ext·x (Nocedal, Wright, Numerical optimization, 2006, sections 3.4 and 3.5). K has the symmetric
+//! part of the derivative of loads that follow the surface (pressures): all of it but at the rim of the loaded surface.
+//!
+//! A state counts when its residual is small, its stiffness positive definite without a shift, and no cell inverted. Laws
+//! without a barrier, as St Venant–Kirchhoff, have other equilibria, inside out, which are no answers.
+
+mod equilibrium;
+mod error;
+
+pub use error::{StaticError, StaticFailure};
+
+use self::equilibrium::Equilibrium;
+use crate::body::SimulatedBody;
+use crate::math::{Scalar, Vec3};
+use crate::solver::LinearSolver;
+
+/// Settings of the search for an equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuasiStatic {
+    /// Residual at which to stop, relative to loads and reactions [> 0]; 1e-10 by default. Where rounding
+    /// stops the descent before that, below √ε (1.5e-8, or 3.5e-4 in single precision), that is accepted, and reported.
+    pub tolerance: f64,
+    /// The most iterations for a share of the load [≥ 1]; 30 by default.
+    pub iterations: usize,
+    /// The first share of the load that is tried [0 < share ≤ 1]; all of it by default.
+    pub first_step: f64,
+    /// The least share by which the load is raised before giving up [> 0]; 1/256 by default.
+    pub smallest_step: f64,
+    /// One linear solve with the stiffness as it is at the start, for small displacements.
+    pub small_strain: bool,
+}
+
+impl Default for QuasiStatic {
+    fn default() -> Self {
+        Self { tolerance: 1e-10, iterations: 30, first_step: 1.0, smallest_step: 1.0 / 256.0, small_strain: false }
+    }
+}
+
+/// How an equilibrium was reached.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StaticReport {
+    /// The load steps that succeeded.
+    pub steps: Vec<LoadStep>,
+    /// How many shares of the load failed and were halved.
+    pub retries: usize,
+}
+
+/// One step of the load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadStep {
+    /// Share of the load at its end, from 0 to 1.
+    pub share: f64,
+    /// Residuals, relative to loads and reactions: before each iteration and after the last.
+    pub residuals: Vec<f64>,
+}
+
+impl StaticReport {
+    /// Newton iterations of all steps that succeeded.
+    pub fn iterations(&self) -> usize {
+        self.steps.iter().map(|step| step.residuals.len() - 1).sum()
+    }
+}
+
+impl QuasiStatic {
+    /// Brings a body to rest under gravity [m/s²], its loads and prescribed motions as they are at `time` [s]. Velocities
+    /// become zero. Nodes that an instrument holds stay where they are.
+    ///
+    /// # Errors
+    /// [`StaticError`]; after [`StaticError::NoEquilibrium`] the body is in the last equilibrium that was found.
+    pub fn solve<T: Scalar>(
+        &self,
+        body: &mut SimulatedBody<T>,
+        gravity: [f64; 3],
+        time: f64,
+        solver: &mut dyn LinearSolver,
+    ) -> Result<StaticReport, StaticError> {
+        self.check()?;
+        let mut equilibrium = Equilibrium::new(body, Vec3::from(gravity).cast(), time, solver)?;
+        let report = if self.small_strain { equilibrium.solve_once() } else { self.raise_load(&mut equilibrium) };
+        equilibrium.come_to_rest();
+        report
+    }
+
+    fn raise_load<T: Scalar>(&self, equilibrium: &mut Equilibrium<'_, T>) -> Result<StaticReport, StaticError> {
+        let mut report = StaticReport { steps: Vec::new(), retries: 0 };
+        let (mut share, mut step) = (0.0, self.first_step);
+        while share < 1.0 {
+            let next = if share + step > 1.0 - 1e-9 { 1.0 } else { share + step };
+            match equilibrium.advance(next, self.tolerance, self.iterations) {
+                Ok(residuals) => {
+                    report.steps.push(LoadStep { share: next, residuals });
+                    share = next;
+                    step *= 2.0;
+                }
+                Err(failure) => {
+                    step = 0.5 * (next - share);
+                    report.retries += 1;
+                    if step < self.smallest_step {
+                        return Err(equilibrium.beyond(share, next, failure));
+                    }
+                }
+            }
+        }
+        Ok(report)
+    }
+
+    fn check(&self) -> Result<(), StaticError> {
+        let positive = |name, value: f64| {
+            let good = value.is_finite() && value > 0.0;
+            if good { Ok(()) } else { Err(StaticError::OutOfRange { name, value, range: "positive" }) }
+        };
+        positive("tolerance", self.tolerance)?;
+        positive("iterations", self.iterations as f64)?;
+        positive("first_step", self.first_step)?;
+        positive("smallest_step", self.smallest_step)
+    }
+}

@@ -1,0 +1,133 @@
+//! Stable neo-Hookean elasticity: rubber that survives being turned inside out.
+//!
+//! ψ(F) = μ'/2 (I_C − 3) − μ'/2 ln((I_C + 1)/4) − ¾μ' (J − 1) + λ'/2 (J − 1)²,   I_C = F:F,  J = det F
+//! P(F) = μ' (1 − 1/(I_C + 1)) F + [λ' (J − 1) − ¾μ'] cof F
+//! μ' = 4/3 μ,   λ' = λ + 5/6 μ
+//!
+//! which is the paper's μ'/2 (I_C − 3) + λ'/2 (J − α)² − μ'/2 ln(I_C + 1), α = 1 + ¾ μ'/λ', less its value at rest. The
+//! primed parameters make small strains obey Hooke's law with λ and μ; users give those.
+//!
+//! Source: Smith, de Goes, Kim, Stable neo-Hookean flesh simulation, ACM TOG 37 (2018), eq. 14 and section 3.4.
+//! Range: any deformation. Nothing is infinite at J = 0, and an inverted element is driven back; J = 1 is kept as well
+//! as λ/μ asks for.
+
+use super::neo_hookean::{curvature_of_determinant, felt_square};
+use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness};
+use crate::math::{Mat3, Real};
+
+/// Parameters λ, μ [Pa] of small strains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StableNeoHookean<R = f64> {
+    /// First Lamé parameter λ [Pa], > −2μ/3.
+    pub lambda: R,
+    /// Shear modulus μ [Pa], > 0.
+    pub mu: R,
+}
+
+impl StableNeoHookean {
+    /// From the Lamé parameters of small strains.
+    pub fn new(lame: Lame) -> Self {
+        Self { lambda: lame.lambda, mu: lame.mu }
+    }
+
+    /// From Young's modulus [Pa] and Poisson's ratio of small strains.
+    ///
+    /// # Errors
+    /// As [`Lame::from_young_poisson`].
+    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
+        Lame::from_young_poisson(young, poisson).map(Self::new)
+    }
+}
+
+impl<R: Real> StableNeoHookean<R> {
+    /// λ' = λ + 5/6 μ and μ' = 4/3 μ [Pa], the parameters of the formulae.
+    #[inline(always)]
+    pub fn rescaled(&self) -> (R, R) {
+        let mu = self.mu;
+        (mu.mul_add(mu.like(5.0 / 6.0), self.lambda), mu * mu.like(4.0 / 3.0))
+    }
+}
+
+impl<R: Real> Law<R> for StableNeoHookean<R> {
+    // With H = F − I, q = H:H and J − 1 = tr H + k: ψ = μ' {⅜ q − ¾ k + ½[s − ln(1 + s)]} + λ'/2 (J − 1)²,
+    // s = (I_C − 3)/4. The terms of first order are gone, which otherwise cancel and leave only roundings at small strain.
+    #[inline(always)]
+    fn energy(&self, f: &Mat3<R>) -> R {
+        let (lambda, mu) = self.rescaled();
+        let h = *f - f.identity_like();
+        let (trace, square, cofactor) = (h.trace(), h.squared_norm(), h.cofactor());
+        let beyond_trace = cofactor.trace() + h.columns[0].dot(cofactor.columns[0]);
+        let s = (trace.double() + square) * square.like(0.25);
+        let logarithm = (s - (s + s.like(1.0)).ln()).half();
+        let shape = (square.half() - beyond_trace) * square.like(0.75) + logarithm;
+        mu * shape + (lambda * (trace + beyond_trace).squared()).half()
+    }
+
+    #[inline(always)]
+    fn stress(&self, f: &Mat3<R>) -> Mat3<R> {
+        let (lambda, mu) = self.rescaled();
+        let one = mu.like(1.0);
+        let cofactor = f.cofactor();
+        let change = f.columns[0].dot(cofactor.columns[0]) - one;
+        let shape = mu * (one - one / (f.squared_norm() + one));
+        *f * shape + cofactor * (lambda * change - mu * mu.like(0.75))
+    }
+
+    #[inline(always)]
+    fn tangent(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
+        let (lambda, mu) = self.rescaled();
+        let one = mu.like(1.0);
+        let cofactor = f.cofactor();
+        let change = f.columns[0].dot(cofactor.columns[0]) - one;
+        let share = one / (f.squared_norm() + one);
+        *df * (mu * (one - share))
+            + *f * (mu * share.squared() * f.contract(*df)).double()
+            + cofactor * (lambda * cofactor.contract(*df))
+            + f.cofactor_along(*df) * (lambda * change - mu * mu.like(0.75))
+    }
+
+    #[inline(always)]
+    fn stiffness_bound(&self, f: &Mat3<R>) -> R {
+        let (lambda, mu) = self.rescaled();
+        let one = mu.like(1.0);
+        let (square, cofactor) = (f.squared_norm(), f.cofactor());
+        let determinant = f.columns[0].dot(cofactor.columns[0]);
+        let share = one / (square + one);
+        let shape = mu * (one - share) + (mu * share.squared() * square).double();
+        let pressure = lambda * (determinant - one) - mu * mu.like(0.75);
+        lambda.mul_add(felt_square(cofactor), shape) + curvature_of_determinant(pressure, determinant, square)
+    }
+}
+
+impl LawFamily for StableNeoHookean {
+    type At<R: Real> = StableNeoHookean<R>;
+
+    const NAME: &'static str = "stable-neo-hookean";
+    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
+    const OBJECTIVE: bool = true;
+
+    #[inline(always)]
+    fn at<R: Real>(values: &[R]) -> StableNeoHookean<R> {
+        StableNeoHookean { lambda: values[0], mu: values[1] }
+    }
+
+    fn from_values(values: &[f64]) -> Self {
+        Self::at(values)
+    }
+
+    fn values(&self) -> Vec<f64> {
+        vec![self.lambda, self.mu]
+    }
+
+    fn example() -> Self {
+        Self::new(Lame::EXAMPLE)
+    }
+
+    fn at_rest(&self) -> RestStiffness {
+        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
+    }
+
+    fn quadratic(&self) -> Option<QuadraticLaw> {
+        None
+    }
+}

@@ -1,0 +1,445 @@
+//! The nodes as points of integration: each sees the nodes around it through the gradients g_ab of its mean deformation.
+
+use std::marker::PhantomData;
+
+use fearless_simd::{Simd, dispatch};
+
+use super::super::block_sink::add_block;
+use super::super::block_table::BlockTable;
+use super::super::tet_loop::{RestTet, gather_corner};
+use super::super::{BlockSink, ModelError, Scratch};
+use crate::material::{Law, LawFamily, Tissue};
+use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, dispatch_level};
+use crate::mesh::{TetMesh, cells_of_nodes};
+
+/// Points whose numbers of neighbours are sorted together, in batches: it fills the lanes, and a wider window would
+/// take neighbours apart.
+const WINDOW: usize = 32;
+/// The most parameters of a law.
+const MAX_PARAMETERS: usize = 8;
+
+/// Points in batches of lanes, of the law `L`. A point is a node and one of the tissues around it.
+#[derive(Debug)]
+pub(super) struct NodalPoints<T: Scalar, L> {
+    /// The neighbours of batch b are the entries `starts[b]..starts[b + 1]`, the node itself first. Lanes with fewer
+    /// repeat it with a gradient of zero.
+    starts: Vec<u32>,
+    /// Entry after entry, a node for each lane.
+    nodes: Vec<u32>,
+    /// Entry after entry, x, y, z of g_ab [1/m] for each lane.
+    gradients: Vec<T>,
+    /// Entry after entry, what the cells of the point add to the spring k_ab [N/m], for each lane.
+    springs: Vec<T>,
+    /// V_a [m³], s μ V_a [J], then the law's parameters.
+    constants: BlockTable<T>,
+    rest: Rest,
+    law: PhantomData<L>,
+}
+
+/// What the gradients are computed from when cells are removed.
+#[derive(Clone, Debug)]
+struct Rest {
+    mesh: TetMesh,
+    cells_at_nodes: (Vec<u32>, Vec<u32>),
+    removed: Vec<bool>,
+    /// Which tissue a cell is of.
+    tissues: Vec<u32>,
+    /// s μ of each tissue [Pa].
+    shares: Vec<f64>,
+    /// Node and tissue of each point.
+    points: Vec<(u32, u32)>,
+}
+
+impl<T: Scalar, L> Clone for NodalPoints<T, L> {
+    fn clone(&self) -> Self {
+        Self {
+            starts: self.starts.clone(),
+            nodes: self.nodes.clone(),
+            gradients: self.gradients.clone(),
+            springs: self.springs.clone(),
+            constants: self.constants.clone(),
+            rest: self.rest.clone(),
+            law: PhantomData,
+        }
+    }
+}
+
+impl Rest {
+    /// The points of `mesh`, where `share` is s μ of a cell [Pa]; and a cell of each tissue.
+    fn new(mesh: &TetMesh, tissue: &Tissue, share: impl Fn(usize) -> f64) -> Result<(Self, Vec<usize>), ModelError> {
+        mesh.check_indices()?;
+        let cells = mesh.cells.len();
+        (0..cells).try_for_each(|cell| RestTet::new(mesh, cell).map(|_| ()))?;
+        let mut examples: Vec<usize> = Vec::new();
+        let mut tissues = vec![0; cells];
+        if tissue.is_uniform() {
+            examples.push(0);
+        } else {
+            let bits = |cell: usize| tissue.values(cell).iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+            let mut known = std::collections::BTreeMap::new();
+            for (cell, number) in tissues.iter_mut().enumerate() {
+                *number = *known.entry(bits(cell)).or_insert_with(|| {
+                    examples.push(cell);
+                    examples.len() as u32 - 1
+                });
+            }
+        }
+        let cells_at_nodes = cells_of_nodes(mesh);
+        let mut rest = Self {
+            mesh: TetMesh::new(mesh.nodes.clone(), mesh.cells.clone()),
+            cells_at_nodes,
+            removed: vec![false; cells],
+            tissues,
+            shares: examples.iter().map(|&cell| share(cell)).collect(),
+            points: Vec::new(),
+        };
+        for node in 0..mesh.nodes.len() as u32 {
+            let mut around: Vec<u32> = rest.cells_at(node).map(|cell| rest.tissues[cell]).collect();
+            around.sort_unstable();
+            around.dedup();
+            rest.points.extend(around.into_iter().map(|tissue| (node, tissue)));
+        }
+        Ok((rest, examples))
+    }
+
+    fn cells_at(&self, node: u32) -> impl Iterator<Item = usize> + '_ {
+        let (starts, cells) = &self.cells_at_nodes;
+        let span = starts[node as usize] as usize..starts[node as usize + 1] as usize;
+        cells[span].iter().map(|&cell| cell as usize).filter(|&cell| !self.removed[cell])
+    }
+
+    /// Nodes of the cells of a point, its own first.
+    fn neighbours(&self, point: usize) -> Vec<u32> {
+        let (node, tissue) = self.points[point];
+        let cells = self.cells_at(node).filter(|&cell| self.tissues[cell] == tissue);
+        let mut around: Vec<u32> =
+            cells.flat_map(|cell| self.mesh.cells[cell]).filter(|&other| other != node).collect();
+        around.sort_unstable();
+        around.dedup();
+        around.insert(0, node);
+        around
+    }
+
+    /// V_a, and of each of `neighbours` V_a g_ab and −Σ_e V_e ∇N_a·∇N_b.
+    fn weigh(&self, point: usize, neighbours: &[u32]) -> (f64, Vec<(Vec3<f64>, f64)>) {
+        let (node, tissue) = self.points[point];
+        let mut volume = 0.0;
+        let mut sums = vec![(Vec3::ZERO, 0.0); neighbours.len()];
+        for cell in self.cells_at(node).filter(|&cell| self.tissues[cell] == tissue) {
+            let rest = RestTet::measure(&self.mesh, cell);
+            let share = rest.volume / 4.0;
+            volume += share;
+            let (corners, gradients) = (self.mesh.cells[cell], rest.gradients());
+            let own =
+                corners.iter().zip(gradients).find(|(corner, _)| **corner == node).map_or(Vec3::ZERO, |(_, own)| own);
+            for (corner, gradient) in corners.into_iter().zip(gradients) {
+                if let Some(entry) = neighbours.iter().position(|&other| other == corner) {
+                    sums[entry].0 += gradient * share;
+                    sums[entry].1 -= gradient.dot(own) * rest.volume;
+                }
+            }
+        }
+        (volume, sums)
+    }
+}
+
+impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
+    /// The points of `mesh`, where `share` is s μ of a cell [Pa].
+    pub(super) fn new(mesh: &TetMesh, tissue: &Tissue, share: impl Fn(usize) -> f64) -> Result<Self, ModelError> {
+        let (mut rest, examples) = Rest::new(mesh, tissue, share)?;
+        let mut lists: Vec<(Vec<u32>, (u32, u32))> =
+            (0..rest.points.len()).map(|point| (rest.neighbours(point), rest.points[point])).collect();
+        for window in lists.chunks_mut(WINDOW * T::LANES) {
+            window.sort_by_key(|(neighbours, _)| std::cmp::Reverse(neighbours.len()));
+        }
+        rest.points = lists.iter().map(|&(_, point)| point).collect();
+        let mut model = Self {
+            starts: vec![0],
+            nodes: Vec::new(),
+            gradients: Vec::new(),
+            springs: Vec::new(),
+            constants: BlockTable::new(T::LANES, lists.len(), 2 + L::PARAMETERS.len(), T::ZERO),
+            rest,
+            law: PhantomData,
+        };
+        for batch in lists.chunks(T::LANES) {
+            let longest = batch.iter().map(|(list, _)| list.len()).max().unwrap_or(0);
+            for entry in 0..longest {
+                let at = |lane: usize| {
+                    let (list, (node, _)) = &batch[lane.min(batch.len() - 1)];
+                    list.get(entry).copied().unwrap_or(*node)
+                };
+                model.nodes.extend((0..T::LANES).map(at));
+            }
+            model.starts.push((model.nodes.len() / T::LANES) as u32);
+        }
+        model.gradients = vec![T::ZERO; 3 * model.nodes.len()];
+        model.springs = vec![T::ZERO; model.nodes.len()];
+        for row in 0..model.constants.padded_rows() {
+            let point = row.min(lists.len() - 1);
+            let values = tissue.values(examples[model.rest.points[point].1 as usize]);
+            let numbers = [0.0; 2].into_iter().chain(values.iter().copied());
+            model.constants.set_row(row, numbers.map(T::from_f64));
+            model.write(row, point);
+        }
+        Ok(model)
+    }
+
+    /// Writes volume and gradients of a point into a row; a row of padding keeps a volume of zero.
+    fn write(&mut self, row: usize, point: usize) {
+        let (batch, lane) = (row / T::LANES, row % T::LANES);
+        let entries = self.starts[batch] as usize..self.starts[batch + 1] as usize;
+        let mut list: Vec<u32> = entries.clone().map(|entry| self.nodes[entry * T::LANES + lane]).collect();
+        let length = 1 + list[1..].iter().take_while(|&&node| node != list[0]).count();
+        list.truncate(length);
+        let (volume, sums) = self.rest.weigh(point, &list);
+        let there = row == point && volume > 0.0;
+        let volume_here = if there { volume } else { 0.0 };
+        let share = self.rest.shares[self.rest.points[point].1 as usize];
+        *self.constants.get_mut(row, 0) = T::from_f64(volume_here);
+        *self.constants.get_mut(row, 1) = T::from_f64(share * volume_here);
+        for (entry, &(_, sum)) in entries.clone().zip(&sums).skip(1) {
+            self.springs[entry * T::LANES + lane] = T::from_f64(if row == point { share * sum } else { 0.0 });
+        }
+        // A point that has lost all its cells keeps its gradients: its deformation stays as harmless as it was.
+        if volume > 0.0 {
+            for (entry, (sum, _)) in entries.zip(sums) {
+                for axis in 0..3 {
+                    self.gradients[(3 * entry + axis) * T::LANES + lane] = T::from_f64(sum[axis] / volume);
+                }
+            }
+        }
+    }
+
+    pub(super) fn remove_cells(&mut self, cells: &[u32]) {
+        let mut touched = vec![false; self.rest.mesh.nodes.len()];
+        for &cell in cells {
+            self.rest.removed[cell as usize] = true;
+            self.rest.mesh.cells[cell as usize].into_iter().for_each(|node| touched[node as usize] = true);
+        }
+        for point in 0..self.rest.points.len() {
+            if touched[self.rest.points[point].0 as usize] {
+                self.write(point, point);
+            }
+        }
+    }
+
+    pub(super) fn table_bytes(&self) -> usize {
+        let entries = size_of_val(self.nodes.as_slice()) + size_of_val(self.springs.as_slice());
+        entries + size_of_val(self.gradients.as_slice()) + self.constants.bytes()
+    }
+
+    pub(super) fn add_nodal_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        let Scratch { nodal, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
+        scratch.finish(out);
+    }
+
+    pub(super) fn add_nodal_product(
+        &self,
+        x: &[Vec3<T>],
+        dx: &[Vec3<T>],
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) {
+        scratch.start(x);
+        scratch.start_direction(dx);
+        let Scratch { nodal, direction, forces, .. } = scratch;
+        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+        scratch.finish(out);
+    }
+
+    pub(super) fn add_nodal_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        scratch.start(x);
+        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+    }
+
+    /// The entries and the constants of each batch.
+    fn batches(&self) -> impl Iterator<Item = (Batch<'_, T>, &[T])> {
+        self.starts.windows(2).zip(self.constants.blocks()).map(|(span, constants)| {
+            let (start, end) = (span[0] as usize * T::LANES, span[1] as usize * T::LANES);
+            let gradients = &self.gradients[3 * start..3 * end];
+            (Batch { nodes: &self.nodes[start..end], gradients, springs: &self.springs[start..end] }, constants)
+        })
+    }
+
+    #[inline(always)]
+    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
+        for (batch, constants) in self.batches() {
+            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, constants);
+            let (f, pull) = batch.around::<S>(simd, x);
+            let (stress, pull) = if TANGENT {
+                let (df, pull) = batch.around::<S>(simd, dx);
+                (point.tangent::<L>(&f, &df), pull)
+            } else {
+                (point.stress::<L>(&f), pull)
+            };
+            let mut sum = pull;
+            for (nodes, gradient, _) in batch.entries().skip(1) {
+                let force = stress * load_gradient::<T, S>(simd, gradient);
+                sum += force;
+                T::Lanes::<S>::scatter_add(force.to_array(), nodes, out);
+            }
+            T::Lanes::<S>::scatter_add((-sum).to_array(), &batch.nodes[..T::LANES], out);
+        }
+    }
+
+    // K_bc = V Σ A:(g_b ⊗ g_c): the law's nine derivatives once, then products with gradients.
+    #[inline(always)]
+    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
+        let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+        let one = T::Lanes::<S>::splat(simd, T::ONE);
+        for (number, (batch, constants)) in self.batches().enumerate() {
+            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, constants);
+            let (f, _) = batch.around::<S>(simd, x);
+            let Batch { nodes, gradients, springs } = batch;
+            let mut derivatives = [[f; 3]; 3];
+            for row in 0..3 {
+                for column in 0..3 {
+                    let mut direction = Mat3::from_columns(Vec3::splat(zero), Vec3::splat(zero), Vec3::splat(zero));
+                    direction.columns[column][row] = one;
+                    derivatives[row][column] = point.tangent::<L>(&f, &direction);
+                }
+            }
+            let count = nodes.len() / T::LANES;
+            let points = self.constants.rows() - number * T::LANES;
+            for c in 0..count {
+                let g = load_gradient::<T, S>(simd, &gradients[3 * c * T::LANES..]);
+                let along = [0, 1, 2].map(|row: usize| {
+                    let [a, b, c] = derivatives[row];
+                    a * g.x + b * g.y + c * g.z
+                });
+                let rows = if sink.keeps_diagonal_only() { c..c + 1 } else { 0..count };
+                for b in rows {
+                    let g = load_gradient::<T, S>(simd, &gradients[3 * b * T::LANES..]);
+                    let [x, y, z] = along.map(|stress| stress * g);
+                    let block = Mat3::from_columns(x, y, z);
+                    add_block::<T, S>(&block, nodes, [b, c], points, sink);
+                }
+            }
+            self.add_springs::<S>(simd, nodes, springs, points, sink);
+        }
+    }
+
+    /// Springs hold a point to its neighbours: its own row of the matrix, as the neighbours' points have theirs.
+    #[inline(always)]
+    fn add_springs<S: Simd>(&self, simd: S, nodes: &[u32], springs: &[T], points: usize, sink: &mut dyn BlockSink<T>) {
+        let mut sum = T::Lanes::<S>::splat(simd, T::ZERO);
+        for (entry, spring) in springs.chunks_exact(T::LANES).enumerate().skip(1) {
+            let spring = T::Lanes::<S>::load(simd, spring);
+            sum += spring;
+            if !sink.keeps_diagonal_only() {
+                add_block::<T, S>(&Mat3::diagonal(-spring), nodes, [0, entry], points, sink);
+            }
+        }
+        add_block::<T, S>(&Mat3::diagonal(sum), nodes, [0, 0], points, sink);
+    }
+
+    /// Sum of the energies [J], point by point in double precision.
+    pub(super) fn nodal_energy(&self, x: &[Vec3<T>]) -> f64 {
+        let at_point = |row: usize| {
+            let (batch, lane) = (row / T::LANES, row % T::LANES);
+            let entries = self.starts[batch] as usize..self.starts[batch + 1] as usize;
+            let displacement = |entry: usize| {
+                let node = self.nodes[entry * T::LANES + lane] as usize;
+                x[node].cast::<f64>() - self.rest.mesh.nodes[node]
+            };
+            let own = displacement(entries.start);
+            let (mut h, mut springs) = (Mat3::ZERO, 0.0);
+            for entry in entries {
+                let gradient = [0, 1, 2].map(|axis| self.gradients[(3 * entry + axis) * T::LANES + lane].to_f64());
+                let apart = displacement(entry) - own;
+                h += apart.outer(Vec3::from(gradient));
+                springs += self.springs[entry * T::LANES + lane].to_f64() * apart.squared_norm();
+            }
+            let constant = |column: usize| self.constants.get(row, column).to_f64();
+            let mut values = [0.0; MAX_PARAMETERS];
+            (0..L::PARAMETERS.len()).for_each(|column| values[column] = constant(2 + column));
+            let law = <L as LawFamily>::at::<f64>(&values[..L::PARAMETERS.len()]);
+            // half of each spring, whose other end has the other half
+            constant(0) * law.energy(&(Mat3::IDENTITY + h)) - 0.5 * constant(1) * h.squared_norm() + 0.25 * springs
+        };
+        (0..self.constants.rows()).map(at_point).sum()
+    }
+}
+
+/// Volume, share and law of a batch of points.
+struct Point<R> {
+    volume: R,
+    share: R,
+    parameters: [R; MAX_PARAMETERS],
+}
+
+impl<R: Real> Point<R> {
+    #[inline(always)]
+    fn load<T, S, L>(simd: S, constants: &[T]) -> Self
+    where
+        T: Scalar<Lanes<S> = R>,
+        S: Simd,
+        R: Lanes<T, S>,
+        L: LawFamily,
+    {
+        let constant = |column: usize| R::load(simd, &constants[column * T::LANES..]);
+        let mut parameters = [R::splat(simd, T::ZERO); MAX_PARAMETERS];
+        for column in 0..L::PARAMETERS.len() {
+            parameters[column] = constant(2 + column);
+        }
+        Self { volume: constant(0), share: constant(1), parameters }
+    }
+
+    /// V P(F̄) of the law, less the share of the cells.
+    #[inline(always)]
+    fn stress<L: LawFamily>(&self, f: &Mat3<R>) -> Mat3<R> {
+        let law = L::at(&self.parameters[..L::PARAMETERS.len()]);
+        law.stress(f) * self.volume - *f * self.share
+    }
+
+    #[inline(always)]
+    fn tangent<L: LawFamily>(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
+        let law = L::at(&self.parameters[..L::PARAMETERS.len()]);
+        law.tangent(f, df) * self.volume - *df * self.share
+    }
+}
+
+/// A mean of gradients, and a pull of springs.
+type Around<R> = (Mat3<R>, Vec3<R>);
+
+/// The entries of a batch of points.
+#[derive(Clone, Copy)]
+struct Batch<'a, T> {
+    nodes: &'a [u32],
+    gradients: &'a [T],
+    springs: &'a [T],
+}
+
+impl<'a, T: Scalar> Batch<'a, T> {
+    /// A node, x, y, z of a gradient, and a spring, for each lane.
+    #[inline(always)]
+    fn entries(self) -> impl Iterator<Item = (&'a [u32], &'a [T], &'a [T])> {
+        let gradients = self.gradients.chunks_exact(3 * T::LANES);
+        let others = gradients.zip(self.springs.chunks_exact(T::LANES));
+        self.nodes.chunks_exact(T::LANES).zip(others).map(|(nodes, (gradient, spring))| (nodes, gradient, spring))
+    }
+
+    /// Σ_b (v_b − v_a) g_abᵀ and Σ_b k_ab (v_b − v_a): of places F̄ and the pull of the springs, of directions their
+    /// derivatives. The differences keep digits that v alone would lose.
+    #[inline(always)]
+    fn around<S: Simd>(self, simd: S, v: &[[T; 4]]) -> Around<T::Lanes<S>> {
+        let own = gather_corner::<T, S>(simd, v, self.nodes, 0);
+        let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
+        let (mut mean, mut pull) = (Mat3::from_columns(zero, zero, zero), zero);
+        for (nodes, gradient, spring) in self.entries().skip(1) {
+            let apart = gather_corner::<T, S>(simd, v, nodes, 0) - own;
+            mean += apart.outer(load_gradient::<T, S>(simd, gradient));
+            pull += apart * T::Lanes::<S>::load(simd, spring);
+        }
+        (mean, pull)
+    }
+}
+
+#[inline(always)]
+fn load_gradient<T: Scalar, S: Simd>(simd: S, gradient: &[T]) -> Vec3<T::Lanes<S>> {
+    let component = |axis: usize| T::Lanes::<S>::load(simd, &gradient[axis * T::LANES..]);
+    Vec3::new(component(0), component(1), component(2))
+}

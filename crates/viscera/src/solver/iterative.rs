@@ -1,0 +1,79 @@
+use super::{BlockJacobi, ConjugateGradient, Ending, LinearSolver, Problem, SolverError, Stop, System};
+use crate::math::Vec3;
+
+/// Conjugate gradients on the assembled matrix: what needs no factorisation, for large bodies and for programs without one.
+///
+/// A matrix that is not positive definite is noticed where a direction of the iteration meets a negative curvature, as it
+/// nearly always does; a factorisation is sure.
+#[derive(Clone, Debug)]
+pub struct Iterative {
+    /// Where to stop: residual over right-hand side, in the norm of the preconditioner [> 0, < 1].
+    tolerance: f64,
+    memory: Option<(ConjugateGradient<f64>, BlockJacobi<f64>)>,
+}
+
+/// The most iterations for each unknown: rounding keeps the directions from being conjugate, and one is not enough.
+const ITERATIONS: u32 = 10;
+
+impl Iterative {
+    /// A solver that stops at this relative residual [> 0, < 1].
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, memory: None }
+    }
+}
+
+/// A residual of 1e-12: what a factorisation would leave.
+impl Default for Iterative {
+    fn default() -> Self {
+        Self::new(1e-12)
+    }
+}
+
+fn iterations(system: &System) -> u32 {
+    3 * ITERATIONS * system.nodes() as u32
+}
+
+impl LinearSolver for Iterative {
+    fn analyse(&mut self, system: &System) {
+        let nodes = system.nodes();
+        self.memory = Some((ConjugateGradient::new(nodes, iterations(system)), BlockJacobi::new(nodes)));
+    }
+
+    fn factor(&mut self, system: &System) -> Result<(), SolverError> {
+        if self.memory.is_none() {
+            self.analyse(system);
+        }
+        if let Some((_, preconditioner)) = &mut self.memory {
+            for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
+                *block = system.matrix.block(node, node);
+            }
+            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()));
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError> {
+        let Some((conjugate_gradient, preconditioner)) = &mut self.memory else {
+            return Err(SolverError::NotPositiveDefinite);
+        };
+        let zeros = vec![Vec3::ZERO; right.len()];
+        let mut solution = zeros.clone();
+        let problem = Problem {
+            rhs: right,
+            filters: &system.filters,
+            prescribed: &zeros,
+            preconditioner,
+            masses: &vec![0.0; zeros.len()],
+        };
+        let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
+        let report = conjugate_gradient.solve(&mut system.matrix.clone(), &problem, stop, &mut solution);
+        match report.ending {
+            Ending::Converged => right.copy_from_slice(&solution),
+            Ending::NegativeCurvature => return Err(SolverError::NotPositiveDefinite),
+            Ending::Exhausted => {
+                return Err(SolverError::NotConverged { residual: report.residual, iterations: report.iterations });
+            }
+        }
+        Ok(())
+    }
+}
