@@ -37,7 +37,7 @@ fn warnings(file: &SceneFile, summary: &SceneSummary) -> Vec<String> {
         warnings.push("the scene has no body: nothing will move".to_owned());
     }
     let heavy = file.gravity.iter().any(|component| component.0 != 0.0);
-    let held = |body: &BodySummary| body.fixed.0 > 0 || body.prescribed > 0;
+    let held = |body: &BodySummary| body.fixed.0 > 0 || body.prescribed > 0 || body.guided > 0;
     for body in summary.bodies.iter().filter(|body| heavy && !held(body)) {
         warnings.push(format!("nothing holds body `{}`: it falls; `fix` a region of it", body.name));
     }

@@ -60,6 +60,8 @@ pub struct BodySummary {
     pub fixed: (usize, String),
     /// Nodes that are moved along a given way.
     pub prescribed: usize,
+    /// Nodes that move in a plane or along a line only.
+    pub guided: usize,
     /// Loads.
     pub loads: usize,
     /// What was found and repaired in its mesh file.
@@ -137,6 +139,7 @@ impl<T: Scalar> BuiltScene<T> {
             stable_step,
             fixed: (count(|motion| motion == NodeMotion::Fixed), fixed),
             prescribed: count(|motion| matches!(motion, NodeMotion::Prescribed(_))),
+            guided: count(|motion| matches!(motion, NodeMotion::Guided(_))),
             loads: described.load.len(),
             notices: notices.collect(),
         }
@@ -208,6 +211,9 @@ impl fmt::Display for BodySummary {
         writeln!(out, "  fixed   {} nodes: {}", self.fixed.0, self.fixed.1)?;
         if self.prescribed > 0 {
             writeln!(out, "  moved   {} nodes", self.prescribed)?;
+        }
+        if self.guided > 0 {
+            writeln!(out, "  slide   {} nodes", self.guided)?;
         }
         if self.loads > 0 {
             writeln!(out, "  loads   {}", self.loads)?;

@@ -68,6 +68,10 @@ fn a_written_scene_reads_as_the_same_scene() {
         loose-pieces = "drop"
         part = [{ region = "tumour", law = { kind = "linear", young = "20 kPa", poisson = 0.3 } }]
         prescribe = [{ region = { nearest = [0, 0, 0] }, displacement = [["0 s", [0, 0, 0]], ["1 s", [0, "1 cm", 0]]] }]
+        slide = [
+            { region = "surface", normal = [1, 0, 0] },
+            { region = "all", normal = [0, 0, 2], displacement = [["0 s", 0], ["1 s", "1 cm"]] },
+        ]
         load = [
             { region = { half-space = { point = [0, 0, 0], normal = [1, 0, 0] } }, force = [0, "1 N", 0] },
             { region = "surface", pressure = [[0, 0], [1, "2 kPa"]] },
@@ -80,6 +84,12 @@ fn a_written_scene_reads_as_the_same_scene() {
         model = { kind = "corotational", rotation = "qr", strain-displacement = "updated", volume = "current", tangent = "exact" }
         stiffness-damping = "10 ms"
 
+        [body.c]
+        mesh = { generate = "box", size = [1, 1, 1], cells = [2, 2, 2] }
+        density = 1000
+        law = { kind = "stable-neo-hookean", young = 1000, poisson = 0.499 }
+        model = { kind = "nodally-integrated", stabilise = 0.05 }
+
         [instrument.hook]
         kind = "cautery"
         path = [0, 0, 0]
@@ -88,5 +98,5 @@ fn a_written_scene_reads_as_the_same_scene() {
     let read = |text: &str| Scene::parse(text, "").and_then(|scene| scene.check()).unwrap_or_else(|e| panic!("{e}"));
     let scene = read(text);
     assert_eq!(read(&scene.to_toml().unwrap()), scene);
-    assert_eq!(scene.body.keys().collect::<Vec<_>>(), ["a", "b"], "bodies keep their order");
+    assert_eq!(scene.body.keys().collect::<Vec<_>>(), ["a", "b", "c"], "bodies keep their order");
 }

@@ -42,6 +42,17 @@ pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Ve
         let region = region(&prescribed.region, Wanted::Nodes, &mesh, &site.key("region"))?;
         body = body.prescribe(region, curve(&prescribed.displacement, &site.key("displacement"))?);
     }
+    for (index, slide) in file.slide.iter().enumerate() {
+        let site = site.key("slide").key(index);
+        if slide.normal.iter().all(|&component| component == 0.0) {
+            return Err(site.key("normal").error("a direction of length zero", "give the direction that is held"));
+        }
+        let region = region(&slide.region, Wanted::Nodes, &mesh, &site.key("region"))?;
+        body = match &slide.displacement {
+            None => body.slide(region, slide.normal),
+            Some(way) => body.prescribe_along(region, slide.normal, curve(way, &site.key("displacement"))?),
+        };
+    }
     for (index, load) in file.load.iter().enumerate() {
         body = body.load(self::load(load, &mesh, &site.key("load").key(index))?);
     }

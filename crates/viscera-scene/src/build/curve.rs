@@ -5,7 +5,7 @@ use super::csv;
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::CurveFile;
-use crate::quantity::{Pressure, Quantity};
+use crate::quantity::{Length, Pressure, Quantity};
 use crate::unit::{Dimension, TIME};
 
 /// A value of a curve as it stands in a scene.
@@ -29,16 +29,22 @@ impl<Q: Quantity> Written for [Q; 3] {
     }
 }
 
-impl Written for Pressure {
-    type Plain = f64;
-    const DIMENSIONS: &'static [Option<&'static Dimension>] = &[Some(&TIME), Some(Pressure::DIMENSION)];
-    fn plain(self) -> f64 {
-        self.0
-    }
-    fn from_row(row: &[f64]) -> f64 {
-        row[1]
-    }
+macro_rules! written {
+    ($($quantity:ty),+) => {$(
+        impl Written for $quantity {
+            type Plain = f64;
+            const DIMENSIONS: &'static [Option<&'static Dimension>] = &[Some(&TIME), Some(<$quantity>::DIMENSION)];
+            fn plain(self) -> f64 {
+                self.0
+            }
+            fn from_row(row: &[f64]) -> f64 {
+                row[1]
+            }
+        }
+    )+};
 }
+
+written!(Length, Pressure);
 
 pub(super) fn curve<V: Written>(file: &CurveFile<V>, site: &Site) -> Result<Curve<V::Plain>, SceneErrors> {
     let points = match file {

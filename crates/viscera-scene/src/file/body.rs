@@ -39,6 +39,9 @@ pub struct BodyFile {
     /// Parts of another law or density; later ones win where they overlap.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub part: Vec<PartFile>,
+    /// What moves in a plane only: symmetry planes, rollers, sliding plates.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub slide: Vec<SlideFile>,
     /// What is moved along a given way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub prescribe: Vec<PrescribeFile>,
@@ -72,6 +75,20 @@ pub struct PartFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Option<Density>,
+}
+
+/// A region whose nodes follow the forces across `normal`, and along it stay or go a given way.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "slide")]
+pub struct SlideFile {
+    /// Which nodes.
+    pub region: RegionFile,
+    /// Direction in which they are held, of any length but zero.
+    pub normal: [f64; 3],
+    /// How far along it they are from their place at rest [m]; by default they stay.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<CurveFile<Length>>,
 }
 
 /// A region that is moved along a given way.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Acceleration, Time};
 
-pub use body::{BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile};
+pub use body::{BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile, SlideFile};
 pub use curve::{CurveFile, CurvePath};
 pub use instrument::InstrumentFile;
 pub use integrator::{FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName};

@@ -24,6 +24,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("fix = \"z-min\"", "fix = [\"z-min\", { nodes = [1000] }]"),
     ("fix = \"z-min\"", "fix = { box = { low = [0, \"1 m\", 0], high = [1, 0, 1] } }"),
     ("fix = \"z-min\"", "fix = { plane = { point = [0, 0, 0], normal = [0, 0, 0] } }"),
+    ("fix = \"z-min\"", "slide = [{ region = \"z-min\", normal = [0, 0, 0] }]"),
     ("region = \"x-max\"", "region = { nearest = [0, 0, 0] }"),
     ("normal = [0, 0, 1] }", "normal = [0, 0, 1] }, intersection = []"),
     ("point = [0, 0, 0.2]", "point = [0, 0, 0.35]"),
@@ -73,6 +74,8 @@ const SLIPS: &[(&str, &str)] = &[
     ("kind = \"tensor-mass\" }", "kind = \"stiffness-warping\", rotation = \"qr\" }"),
     ("kind = \"tensor-mass\" }", "kind = \"total-lagrangian\", tangent = \"exact\" }"),
     ("kind = \"tensor-mass\" }", "kind = \"tensor-mass\", volume = \"current\" }"),
+    ("kind = \"tensor-mass\" }", "kind = \"total-lagrangian\", stabilise = 0.1 }"),
+    ("kind = \"tensor-mass\" }", "kind = \"nodally-integrated\", stabilise = 2 }"),
 ];
 
 /// What cannot be built is refused in its line, with what is near or what would do: `refusals.txt` is what people read.

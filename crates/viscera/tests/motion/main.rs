@@ -10,6 +10,7 @@ mod dynamics_free_flight;
 mod dynamics_loads;
 mod dynamics_statics;
 mod grasper;
+mod guides;
 mod reference_cylinder;
 mod reference_tube;
 mod support;

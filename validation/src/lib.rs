@@ -1,0 +1,103 @@
+//! Viscera against closed forms, other programs and measurements. A study is a folder here: what is compared with what, and
+//! why the number means something.
+//!
+//! `cargo run --release -p viscera-validation -- [STUDY…]` runs them at full size and writes a page with tables and plots for
+//! each; the tests run them small and assert.
+
+mod error;
+mod plot;
+mod references;
+mod report;
+mod setting;
+
+pub mod assembly_crossover;
+pub mod cantilevers;
+pub mod fixed_beam;
+pub mod frequencies;
+pub mod nearly_incompressible;
+pub mod step_cost;
+pub mod truth_cube;
+
+use std::path::PathBuf;
+
+pub use error::ValidationError;
+pub use report::Report;
+
+/// How large the meshes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// For tests.
+    Small,
+    /// For the record.
+    Full,
+}
+
+/// What is asked of a study.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// How large the meshes are.
+    pub size: Size,
+    /// The measured beads of the truth cube, where the file is at hand.
+    pub measured: Option<PathBuf>,
+}
+
+/// The studies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum StudyKind {
+    /// A clamped beam under its weight, linear: beam theory and three programs.
+    FixedBeam,
+    /// Large static deflection: three programs.
+    Cantilevers,
+    /// Natural frequencies, free flight and release: three programs.
+    Frequencies,
+    /// Cook's membrane and a pressed cube: what locks and what does not.
+    NearlyIncompressible,
+    /// A silicone cube with measured beads.
+    TruthCube,
+    /// From how many iterations on the assembled matrix pays.
+    AssemblyCrossover,
+    /// Time per step against number of cells, for every model.
+    StepCost,
+}
+
+impl StudyKind {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::FixedBeam,
+        Self::Cantilevers,
+        Self::Frequencies,
+        Self::NearlyIncompressible,
+        Self::TruthCube,
+        Self::AssemblyCrossover,
+        Self::StepCost,
+    ];
+
+    /// Its name on the command line, and of its folder.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FixedBeam => "fixed-beam",
+            Self::Cantilevers => "cantilevers",
+            Self::Frequencies => "frequencies",
+            Self::NearlyIncompressible => "nearly-incompressible",
+            Self::TruthCube => "truth-cube",
+            Self::AssemblyCrossover => "assembly-crossover",
+            Self::StepCost => "step-cost",
+        }
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// [`ValidationError`] where a solve fails or a file cannot be read.
+    pub fn run(self, settings: &Settings) -> Result<Report, ValidationError> {
+        match self {
+            Self::FixedBeam => Ok(fixed_beam::study(settings.size)?.report()),
+            Self::Cantilevers => Ok(cantilevers::study(settings.size)?.report()),
+            Self::Frequencies => Ok(frequencies::study(settings.size)?.report()),
+            Self::NearlyIncompressible => Ok(nearly_incompressible::study(settings.size)?.report()),
+            Self::TruthCube => Ok(truth_cube::study(settings)?.report()),
+            Self::AssemblyCrossover => Ok(assembly_crossover::study(settings.size)?.report()),
+            Self::StepCost => Ok(step_cost::study(settings.size)?.report()),
+        }
+    }
+}

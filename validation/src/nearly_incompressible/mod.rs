@@ -1,0 +1,163 @@
+//! Cook's membrane and a pressed cube at ν = 0.4999 and 0.499: which elements lock, and which do not.
+
+use viscera::body::{Body, Load};
+use viscera::curve::Curve;
+use viscera::dynamics::quasi_static::QuasiStatic;
+use viscera::material::{NeoHookean, Tissue};
+use viscera::mesh::{Region, VolumeMesh};
+use viscera::model::{NodallyIntegrated, TotalLagrangian};
+
+use crate::plot::{Plot, Scale};
+use crate::references::{COOK, TRUTH_CUBE, Vector, list, number, read};
+use crate::report::{Table, ratio};
+use crate::setting::{Cells, Settled, plane};
+use crate::{Report, Size, ValidationError};
+
+/// What was found.
+pub struct NearlyIncompressible {
+    /// Cook's membrane: deflection of the corner over the converged one.
+    pub cook: Vec<Convergence>,
+    /// The glued cube under 5 %: force of the plate over the converged one.
+    pub cube: Vec<Convergence>,
+}
+
+/// A kind of element on finer and finer meshes.
+pub struct Convergence {
+    /// Which.
+    pub element: Element,
+    /// Cells to an edge, and the result over the converged one.
+    pub ratios: Vec<(usize, f64)>,
+}
+
+/// A kind of element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Element {
+    cells: Cells,
+    /// Whether it is integrated at the nodes.
+    pub nodal: bool,
+}
+
+impl Element {
+    fn name(self) -> String {
+        let how = if self.nodal { ", integrated at the nodes" } else { "" };
+        format!("{}{how}", self.cells.name())
+    }
+
+    /// A body of this element, of the law of the reference.
+    fn body(self, mesh: VolumeMesh, young: f64, poisson: f64) -> Result<Body, ValidationError> {
+        let tissue = Tissue::uniform(NeoHookean::from_young_poisson(self.cells.share() * young, poisson)?);
+        let body = Body::new(mesh, 1000.0);
+        Ok(if self.nodal {
+            body.model(NodallyIntegrated::new(tissue))
+        } else {
+            body.model(TotalLagrangian::new(tissue))
+        })
+    }
+}
+
+const ELEMENTS: [Element; 5] = [
+    Element { cells: Cells::Six, nodal: false },
+    Element { cells: Cells::Ten, nodal: false },
+    Element { cells: Cells::Hexahedra, nodal: false },
+    Element { cells: Cells::Six, nodal: true },
+    Element { cells: Cells::Ten, nodal: true },
+];
+
+/// # Errors
+/// [`ValidationError`] where a solve fails.
+pub fn study(size: Size) -> Result<NearlyIncompressible, ValidationError> {
+    let full = size == Size::Full;
+    let cook_levels: &[usize] = if full { &[4, 8, 16, 32] } else { &[8, 16] };
+    let cube_levels: &[usize] = if full { &[4, 6, 8, 10, 12] } else { &[4, 6] };
+    let over = |levels: &[usize], element: Element, result: fn(Element, usize) -> Result<f64, ValidationError>| {
+        let one = |&level: &usize| Ok((level, result(element, level)?));
+        Ok(Convergence { element, ratios: levels.iter().map(one).collect::<Result<_, ValidationError>>()? })
+    };
+    let every = |levels: &[usize], result| {
+        ELEMENTS.into_iter().map(|element| over(levels, element, result)).collect::<Result<_, ValidationError>>()
+    };
+    Ok(NearlyIncompressible { cook: every(cook_levels, cook)?, cube: every(cube_levels, cube)? })
+}
+
+/// Cook's panel, (0, 0), (48, 44), (48, 60), (0, 44) mm, in plane strain, pulled up at its end: the corner's way over the
+/// converged one.
+fn cook(element: Element, cells: usize) -> Result<f64, ValidationError> {
+    let case = read(COOK);
+    let skew = |node: &mut Vector| {
+        let (x, y) = (node.x, node.y);
+        *node = Vector::new(0.048 * x, 0.044 * x + y * (0.044 * (1.0 - x) + 0.016 * x), 0.004 * node.z);
+    };
+    let mut mesh = element.cells.fill([cells, cells, 1], [1.0; 3]);
+    match &mut mesh {
+        VolumeMesh::Tet(mesh) => mesh.nodes.iter_mut().for_each(skew),
+        VolumeMesh::Hex(mesh) => mesh.nodes.iter_mut().for_each(skew),
+    }
+    // Superposed cells show each face of the end twice.
+    let shear = element.cells.share() * number(&case["loads"]["shear_traction_y_Pa"]);
+    let traction = Curve::constant(Vector::new(0.0, shear, 0.0));
+    let body = element
+        .body(mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
+        .fix(plane(0, 0.0))
+        .slide(Region::All, [0.0, 0.0, 1.0])
+        .load(Load::Traction { region: plane(0, 0.048), traction });
+    let settled = Settled::new(body, [0.0; 3], &QuasiStatic { tolerance: 1e-9, ..QuasiStatic::default() })?;
+    let expected = number(&case["converged_reference"]["neohooke"]["A_top_right_m"][1]);
+    Ok(settled.displacement_at(Vector::new(0.048, 0.06, 0.0)).y / expected)
+}
+
+/// The cube of 80 mm glued between plates, pressed by 5 %: force over the converged one.
+fn cube(element: Element, cells: usize) -> Result<f64, ValidationError> {
+    const EDGE: f64 = 0.08;
+    let case = read(TRUTH_CUBE);
+    let expected = &list(&case["converged_reference"]["glued_neohooke"])[0];
+    let push = Vector::new(0.0, 0.0, -number(&expected["strain"]) * EDGE);
+    let mesh = element.cells.fill([cells; 3], [EDGE; 3]);
+    let body = element
+        .body(mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
+        .fix(plane(2, 0.0))
+        .prescribe(plane(2, EDGE), Curve::constant(push));
+    let settled = Settled::new(body, [0.0; 3], &QuasiStatic { tolerance: 1e-8, ..QuasiStatic::default() })?;
+    Ok(plate_force(&settled, EDGE) / number(&expected["plate_force_z_N"]))
+}
+
+/// Force along z [N] by which the plate at the height `top` holds a body.
+pub(crate) fn plate_force(settled: &Settled, top: f64) -> f64 {
+    let body = settled.world.body(settled.id);
+    let forces = &body.state().internal_forces;
+    let nodes = body.mesh().nodes().iter().zip(forces);
+    nodes.filter(|(rest, _)| rest.z > top * (1.0 - 1e-9)).map(|(_, force)| force.z).sum()
+}
+
+impl NearlyIncompressible {
+    /// The page.
+    pub fn report(&self) -> Report {
+        let mut report = Report::new("Nearly incompressible tissue").text(
+            "Neo-Hookean tissue; reference: mixed elements of second and third order (dolfinx). Plain elements of low order \
+             keep the volume of every cell, and have then hardly any way left to deform: they lock. Tetrahedra integrated \
+             at the nodes keep the volume around every node, of which there are five to ten times fewer.",
+        );
+        for (name, title, unit, found) in [
+            ("cook", "Cook's membrane, ν = 0.4999: deflection over the converged one", "cells to an edge", &self.cook),
+            (
+                "cube",
+                "A glued cube, ν = 0.499, pressed by 5 %: force over the converged one",
+                "cells to an edge",
+                &self.cube,
+            ),
+        ] {
+            let mut table = Table::new(name, &["element", "cells to an edge", "over the converged result"]);
+            let mut plot =
+                Plot { name, title: title.into(), x: unit, y: "ratio", scale: Scale::Logarithmic, curves: Vec::new() };
+            for Convergence { element, ratios } in found {
+                ratios
+                    .iter()
+                    .for_each(|&(cells, value)| table.push(vec![element.name(), cells.to_string(), ratio(value)]));
+                plot.curve(element.name(), ratios.iter().map(|&(cells, value)| (cells as f64, value)).collect());
+            }
+            let (first, last) = (found[0].ratios[0].0, found[0].ratios[found[0].ratios.len() - 1].0);
+            plot.reference("converged", vec![(first as f64, 1.0), (last as f64, 1.0)]);
+            report = report.text(format!("## {title}")).table(table).plot(plot);
+        }
+        report
+    }
+}

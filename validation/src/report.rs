@@ -1,0 +1,129 @@
+//! Pages with tables and plots.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+use crate::ValidationError;
+use crate::plot::Plot;
+
+/// What a study found, ready to be written.
+#[derive(Clone, Debug)]
+pub struct Report {
+    title: &'static str,
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Debug)]
+enum Block {
+    Text(String),
+    Table(Table),
+    Plot(Plot),
+}
+
+/// A table with a name, which is that of its CSV file.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    name: &'static str,
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    pub(crate) fn new(name: &'static str, head: &[&str]) -> Self {
+        Self { name, head: head.iter().map(|&title| title.to_owned()).collect(), rows: Vec::new() }
+    }
+
+    pub(crate) fn push(&mut self, row: Vec<String>) {
+        assert_eq!(row.len(), self.head.len(), "a row of {} has as many entries as its head", self.name);
+        self.rows.push(row);
+    }
+
+    fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule = format!("|{}\n", "---|".repeat(self.head.len()));
+        self.rows.iter().fold(line(&self.head) + &rule, |text, row| text + &line(row))
+    }
+
+    fn csv(&self) -> String {
+        let line = |cells: &[String]| cells.join(",") + "\n";
+        self.rows.iter().fold(line(&self.head), |text, row| text + &line(row))
+    }
+}
+
+impl Report {
+    pub(crate) fn new(title: &'static str) -> Self {
+        Self { title, blocks: Vec::new() }
+    }
+
+    pub(crate) fn text(mut self, text: impl Into<String>) -> Self {
+        self.blocks.push(Block::Text(text.into()));
+        self
+    }
+
+    pub(crate) fn table(mut self, table: Table) -> Self {
+        self.blocks.push(Block::Table(table));
+        self
+    }
+
+    pub(crate) fn plot(mut self, plot: Plot) -> Self {
+        self.blocks.push(Block::Plot(plot));
+        self
+    }
+
+    /// Writes `README.md` with its tables and plots to `folder`, and gives the text of the page.
+    ///
+    /// # Errors
+    /// [`ValidationError::File`], [`ValidationError::Plot`].
+    pub fn write(&self, folder: &Path) -> Result<String, ValidationError> {
+        std::fs::create_dir_all(folder).map_err(|error| ValidationError::File { path: folder.into(), error })?;
+        let mut page = format!("# {}\n", self.title);
+        for block in &self.blocks {
+            page.push('\n');
+            match block {
+                Block::Text(text) => {
+                    let _ = writeln!(page, "{text}");
+                }
+                Block::Table(table) => {
+                    write_aside(folder, &format!("{}.csv", table.name), &table.csv())?;
+                    page.push_str(&table.markdown());
+                }
+                Block::Plot(plot) => {
+                    write_aside(folder, &format!("{}.svg", plot.name), &plot.svg()?)?;
+                    let _ = writeln!(page, "![{}]({}.svg)", plot.title, plot.name);
+                }
+            }
+        }
+        write_aside(folder, "README.md", &page)?;
+        Ok(page)
+    }
+}
+
+/// Writes a file beside its place and moves it there when it is whole.
+fn write_aside(folder: &Path, name: &str, text: &str) -> Result<(), ValidationError> {
+    let path = folder.join(name);
+    let write = || {
+        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        file.write_all(text.as_bytes())?;
+        file.persist(&path).map_err(|error| error.error)?;
+        Ok(())
+    };
+    write().map_err(|error| ValidationError::File { path: path.clone(), error })
+}
+
+/// A number to three digits.
+pub(crate) fn brief(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (0.01..1000.0).contains(&size) => {
+            let digits = (2 - size.log10().floor() as i32).max(0) as usize;
+            format!("{value:.digits$}")
+        }
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// A ratio to four decimals.
+pub(crate) fn ratio(value: f64) -> String {
+    format!("{value:.4}")
+}

@@ -1,0 +1,118 @@
+//! The studies, small, with what they have to show.
+
+use std::path::{Path, PathBuf};
+
+use viscera_validation::{
+    Settings, Size, StudyKind, cantilevers, fixed_beam, frequencies, nearly_incompressible, truth_cube,
+};
+
+#[test]
+fn the_fixed_beam_is_that_of_other_programs_and_of_beam_theory() {
+    let found = fixed_beam::study(Size::Small).unwrap();
+    let mut compared = 0;
+    for deflection in &found.deflections {
+        if let Some(difference) = deflection.difference {
+            assert!(difference < 1e-8, "nu {}: {difference:e}", deflection.poisson);
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 9, "three elements at three Poisson ratios");
+    for length in &found.lengths {
+        // Shear takes a part of short beams, locking of plain ones.
+        assert!((length.power() - 4.0).abs() < 0.15, "the deflection grows as l^{}", length.power());
+    }
+    let worst = |plain: bool| {
+        let of = found.deflections.iter().filter(|deflection| deflection.element.is_plain() == plain);
+        of.map(|deflection| (deflection.of_converged - 1.0).abs()).fold(0.0, f64::max)
+    };
+    assert!(worst(true) > 0.6 && worst(false) < 0.35, "plain {}, nodal {}", worst(true), worst(false));
+}
+
+#[test]
+fn cantilevers_are_bent_as_other_programs_bend_them() {
+    let found = cantilevers::study(Size::Small).unwrap();
+    assert_eq!(found.cases.len(), 7);
+    for case in &found.cases {
+        assert!(case.difference <= case.tolerance, "{}: {:e}", case.name, case.difference);
+        assert!(case.residuals.last().is_some_and(|&residual| residual < 1e-9), "{}: {:?}", case.name, case.residuals);
+    }
+}
+
+#[test]
+fn frequencies_are_those_of_other_programs_and_motion_keeps_what_it_should() {
+    let found = frequencies::study(Size::Small).unwrap();
+    for spectrum in &found.spectra {
+        assert!(spectrum.difference().is_none_or(|difference| difference < 1e-7), "{}", spectrum.name);
+        assert!(spectrum.highest <= spectrum.bound * (1.0 + 1e-9), "{} is faster than its bound", spectrum.name);
+    }
+    let release = |name: &str| found.releases.iter().find(|release| release.name == name).unwrap();
+    // At a quarter of the critical step another velocity Verlet has 1.9e-3.
+    assert!(release("central differences").energy < 2.0 * 1.9e-3, "{}", release("central differences").energy);
+    assert!(release("energy–momentum").energy < 1e-6, "{}", release("energy–momentum").energy);
+    assert!(!release("backward Euler").rises, "backward Euler never gains energy");
+    for flight in &found.flights {
+        assert!(flight.errors[0] < 1e-9, "{}: momentum {:?}", flight.name, flight.errors);
+    }
+    let conserving = found.flights.iter().find(|flight| flight.name == "energy–momentum").unwrap();
+    assert!(conserving.errors.iter().all(|&error| error < 1e-8), "{:?}", conserving.errors);
+}
+
+#[test]
+fn integrated_at_the_nodes_nothing_locks_and_plain_elements_do() {
+    let found = nearly_incompressible::study(Size::Small).unwrap();
+    for (study, plain, nodal) in [(&found.cook, 0.6, 0.12), (&found.cube, 1.0, 0.06)] {
+        for convergence in study {
+            let (_, ratio) = *convergence.ratios.last().unwrap();
+            let (off, nodal_too) = ((ratio - 1.0).abs(), convergence.element.nodal);
+            assert!(if nodal_too { off < nodal } else { off > plain }, "{ratio} of the converged result");
+        }
+    }
+}
+
+/// The measured beads are published without a licence, and are used where they lie beside the checkout.
+fn measured_beads() -> Option<PathBuf> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/references/truthcube/bead-positions.csv");
+    let there = file.exists().then_some(file);
+    if there.is_none() {
+        eprintln!("the measured beads are not at hand: the cube is compared with converged places only");
+    }
+    there
+}
+
+#[test]
+fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_measured() {
+    let measured = measured_beads();
+    let found = truth_cube::study(&Settings { size: Size::Small, measured }).unwrap();
+    for row in &found.rows {
+        let Some(outcome) = &row.outcome else { panic!("no equilibrium") };
+        if row.variant.is_free_of_locking() && row.variant.is_neo_hookean() {
+            assert!((outcome.force - 1.0).abs() < 0.06, "{} of the converged force on 4³ cells", outcome.force);
+            assert!(outcome.from_converged.mean < 0.5, "{:?}", outcome.from_converged);
+            if let Some(deviation) = outcome.from_measured {
+                let published = [1.07, 1.47, 1.82][row.state];
+                assert!((deviation.mean - published).abs() < 0.1, "{deviation:?}, not a mean of {published} %");
+            }
+        }
+    }
+}
+
+/// Pages are written whole, with their tables and plots.
+#[test]
+fn a_study_writes_its_page_with_tables_and_plots() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = Settings { size: Size::Small, measured: None };
+    for study in [StudyKind::AssemblyCrossover, StudyKind::StepCost] {
+        let out = folder.path().join(study.name());
+        let page = study.run(&settings).unwrap().write(&out).unwrap();
+        assert_eq!(std::fs::read_to_string(out.join("README.md")).unwrap(), page);
+        let mut files: Vec<String> =
+            std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        files.sort();
+        for file in files.iter().filter(|file| file.ends_with(".svg")) {
+            let svg = std::fs::read_to_string(out.join(file)).unwrap();
+            assert!(svg.contains("polyline") && svg.ends_with("</svg>\n"), "{file}");
+            assert!(page.contains(file.as_str()), "{file} is not shown");
+        }
+        assert!(files.iter().any(|file| file.ends_with(".csv")) && files.iter().any(|file| file.ends_with(".svg")));
+    }
+}
