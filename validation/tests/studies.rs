@@ -21,11 +21,11 @@ fn the_fixed_beam_is_that_of_other_programs_and_of_beam_theory() {
         // Shear takes a part of short beams, locking of plain ones.
         assert!((length.power() - 4.0).abs() < 0.15, "the deflection grows as l^{}", length.power());
     }
-    let worst = |plain: bool| {
-        let of = found.deflections.iter().filter(|deflection| deflection.element.is_plain() == plain);
-        of.map(|deflection| (deflection.of_converged - 1.0).abs()).fold(0.0, f64::max)
-    };
-    assert!(worst(true) > 0.6 && worst(false) < 0.35, "plain {}, nodal {}", worst(true), worst(false));
+    // Plain elements are too stiff, those integrated at the nodes too soft: the truth lies between.
+    for deflection in &found.deflections {
+        let stiff = deflection.of_converged < 1.0;
+        assert_eq!(stiff, deflection.element.is_plain(), "nu {}: {}", deflection.poisson, deflection.of_converged);
+    }
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn frequencies_are_those_of_other_programs_and_motion_keeps_what_it_should() {
         assert!(spectrum.highest <= spectrum.bound * (1.0 + 1e-9), "{} is faster than its bound", spectrum.name);
     }
     let release = |name: &str| found.releases.iter().find(|release| release.name == name).unwrap();
-    // At a quarter of the critical step another velocity Verlet has 1.9e-3.
+    // At 0.99 ms another velocity Verlet has 1.9e-3; this is 0.89 ms.
     assert!(release("central differences").energy < 2.0 * 1.9e-3, "{}", release("central differences").energy);
     assert!(release("energy–momentum").energy < 1e-6, "{}", release("energy–momentum").energy);
     assert!(!release("backward Euler").rises, "backward Euler never gains energy");
@@ -86,7 +86,7 @@ fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_me
     for row in &found.rows {
         let Some(outcome) = &row.outcome else { panic!("no equilibrium") };
         if row.variant.is_free_of_locking() && row.variant.is_neo_hookean() {
-            assert!((outcome.force - 1.0).abs() < 0.06, "{} of the converged force on 4³ cells", outcome.force);
+            assert!((outcome.force - 1.0).abs() < 0.06, "{} of the converged force on 6³ cells", outcome.force);
             assert!(outcome.from_converged.mean < 0.5, "{:?}", outcome.from_converged);
             if let Some(deviation) = outcome.from_measured {
                 let published = [1.07, 1.47, 1.82][row.state];

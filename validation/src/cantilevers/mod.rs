@@ -144,7 +144,7 @@ impl Cantilevers {
             .table(cases)
             .text(
                 "E = 10 kPa, ν = 0.3, 0.5 m/s² across the beam, which is what St Venant–Kirchhoff tissue can bear: \
-                 tetrahedra come from below, and integrated at the nodes they are there on the second mesh.",
+                 plain elements come from below, tetrahedra integrated at the nodes from above.",
             )
             .table(refined)
             .plot(plot)

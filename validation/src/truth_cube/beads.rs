@@ -9,7 +9,7 @@ use crate::references::Vector;
 pub(super) const STRAINS: [f64; 3] = [0.05, 0.125, 0.1825];
 
 /// Displacement [m] of every bead at every strain, beads in the order of the reference case: x slowest, then y, then z, in the
-/// axes of the model (x, −y, −z of the scanner).
+/// axes of the model, which are x, −y, −z of the scanner; so the second index of the file runs against y.
 pub(super) fn read(path: &Path) -> Result<[Vec<Vector>; 3], ValidationError> {
     let text = std::fs::read_to_string(path).map_err(|error| ValidationError::File { path: path.into(), error })?;
     let problem = |line: usize, what: String| ValidationError::Beads { path: path.into(), line, what };
@@ -28,7 +28,7 @@ pub(super) fn read(path: &Path) -> Result<[Vec<Vector>; 3], ValidationError> {
         if [i, j, k].iter().any(|index| !(1..=7).contains(index)) {
             return Err(problem(number + 1, format!("a bead ({i}, {j}, {k}); indices go from 1 to 7")));
         }
-        let bead = (i - 1) * 49 + (j - 1) * 7 + (k - 1);
+        let bead = (i - 1) * 49 + (7 - j) * 7 + (k - 1);
         if std::mem::replace(&mut seen[bead], true) {
             return Err(problem(number + 1, format!("the bead ({i}, {j}, {k}) a second time")));
         }
@@ -40,7 +40,7 @@ pub(super) fn read(path: &Path) -> Result<[Vec<Vector>; 3], ValidationError> {
     }
     match seen.iter().position(|seen| !seen) {
         Some(bead) => {
-            let (i, j, k) = (bead / 49 + 1, bead / 7 % 7 + 1, bead % 7 + 1);
+            let (i, j, k) = (bead / 49 + 1, 7 - bead / 7 % 7, bead % 7 + 1);
             Err(problem(text.lines().count(), format!("the bead ({i}, {j}, {k}) is missing")))
         }
         None => Ok(displacements),

@@ -159,7 +159,7 @@ fn check_finds_mistakes_and_oddities_and_runs_nothing() {
         .ends_with(0)
         .says("body cube")
         .says("48 tetrahedra, 27 nodes")
-        .says("stable  steps up to")
+        .says("stable  explicit steps up to")
         .says("the scene is good");
     desk.write("loose.toml", CUBE.replace("fix = \"y-max\"", ""));
     desk.viscera(&["check", "loose.toml"]).ends_with(0).complains("warning: nothing holds body `cube`: it falls");

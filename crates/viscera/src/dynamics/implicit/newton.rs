@@ -4,7 +4,6 @@ use super::ImplicitReport;
 use super::balance::Balance;
 use super::step::Step;
 use crate::math::{Scalar, Vec3};
-use crate::solver::dot;
 
 /// The line search is content when the work of the residual along the correction has fallen below this share.
 const CONTENT: f64 = 0.9;
@@ -63,20 +62,31 @@ impl<T: Scalar> Step<'_, T> {
         for node in 0..memory.prescribed.len() {
             let rest = memory.coast[node] - memory.increment[node];
             let rest = rest - memory.filters[node].apply(rest);
-            memory.prescribed[node] = rest;
-            arrived &= rest.norm() <= memory.coast[node].norm() * (T::EPSILON + T::EPSILON);
+            // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
+            let ways = memory.coast[node].norm() + memory.increment[node].norm();
+            let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
+            memory.prescribed[node] = if is_there { Vec3::ZERO } else { rest };
+            arrived &= is_there;
         }
         arrived
     }
 
+    /// Work of what the forces lack to balance against the correction [J], in the free directions: reactions are larger by far,
+    /// and would turn the rounding of a correction across them into work.
+    fn work(&self) -> f64 {
+        let memory = &*self.memory;
+        let free = memory.filters.iter().zip(&memory.lack).map(|(filter, &lack)| filter.apply(lack));
+        -free.zip(&memory.correction).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
+    }
+
     /// Moves along the correction, as far as it leads towards balance. A step that takes driven nodes along is taken whole.
     fn search(&mut self, arrived: bool) -> Balance {
-        let before = -dot(&self.memory.lack, &self.memory.correction);
+        let before = self.work();
         let mut length = 1.0;
         self.move_by(length);
         let mut balance = self.evaluate();
         for _ in 1..TRIALS {
-            let after = -dot(&self.memory.lack, &self.memory.correction);
+            let after = self.work();
             let finite = balance.lack.is_finite() && after.is_finite();
             if finite && (!arrived || after <= CONTENT * before.abs()) {
                 break;
