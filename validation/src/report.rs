@@ -115,7 +115,8 @@ fn write_aside(folder: &Path, name: &str, text: &str) -> Result<(), ValidationEr
 pub(crate) fn brief(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
-        size if (0.01..1000.0).contains(&size) => {
+        size if (1e3..1e6).contains(&size) => format!("{value:.0}"),
+        size if (0.01..1e3).contains(&size) => {
             let digits = (2 - size.log10().floor() as i32).max(0) as usize;
             format!("{value:.digits$}")
         }

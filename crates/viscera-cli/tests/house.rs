@@ -133,8 +133,9 @@ fn every_path_that_the_documents_name_is_there() {
         let text = fs::read_to_string(&document).unwrap();
         for path in text.split('`').skip(1).step_by(2) {
             let is_path = |c: char| c.is_alphanumeric() || "/._-".contains(c);
-            let is_place =
-                ["crates/", "benches/", "docs/", "scenes/", "fuzz/", ".ci/"].iter().any(|top| path.starts_with(top));
+            let is_place = ["crates/", "benches/", "validation/", "docs/", "scenes/", "fuzz/", ".ci/"]
+                .iter()
+                .any(|top| path.starts_with(top));
             if is_place && path.chars().all(is_path) {
                 assert!(root.join(path).exists(), "{} names {path}, which is not there", document.display());
                 named += 1;

@@ -29,7 +29,7 @@ pub struct AssemblyCrossover {
 pub fn study(size: Size) -> Result<AssemblyCrossover, ValidationError> {
     let (grid, counts): (_, &[u32]) = match size {
         Size::Small => ([3, 3, 6], &[5, 20]),
-        Size::Full => ([7, 7, 14], &[5, 10, 20, 30, 40, 50, 60, 80, 100, 150]),
+        Size::Full => ([7, 7, 14], &[5, 10, 20, 50, 100, 150, 200, 300, 400, 600]),
     };
     let mesh = TetMesh::box_grid_cut(grid, [0.1, 0.1, 0.2], CubeCut::Five);
     let cells = mesh.cells.len();
