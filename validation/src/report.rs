@@ -1,7 +1,6 @@
 //! Pages with tables and plots.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::Path;
 
 use crate::ValidationError;
@@ -101,14 +100,9 @@ impl Report {
 
 /// Writes a file beside its place and moves it there when it is whole.
 fn write_aside(folder: &Path, name: &str, text: &str) -> Result<(), ValidationError> {
-    let path = folder.join(name);
-    let write = || {
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(text.as_bytes())?;
-        file.persist(&path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    write().map_err(|error| ValidationError::File { path: path.clone(), error })
+    let (path, part) = (folder.join(name), folder.join(format!("{name}.part")));
+    let written = std::fs::write(&part, text).and_then(|()| std::fs::rename(&part, &path));
+    written.map_err(|error| ValidationError::File { path, error })
 }
 
 /// A number to three digits.

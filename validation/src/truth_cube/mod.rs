@@ -276,7 +276,9 @@ impl TruthCube {
              way: so the published columns come out. Deviations are mean / least / largest / σ over the beads, in per cent \
              of 80 mm. Beads were measured to about 0.65 mm, and drift; so no method comes below a mean of 1 %, and the \
              deviation hardly sees locking. The plate's force does: plain elements of low order press two to five times \
-             too hard.",
+             too hard, tetrahedra integrated at the nodes come within 2 % on 10³ cells. Where no equilibrium is found, long \
+             damped steps went on moving: rotations by QR and node-wise warping leave a torque in the body, and B updated \
+             has no energy to fall.",
         );
         let report = if self.measured {
             report
