@@ -7,6 +7,30 @@ impl<T: Scalar> World<T> {
     /// Brings a body to rest under the world's gravity, its loads and prescribed motions as they are now. Time stands
     /// still. Panics for a number of another world.
     ///
+    /// ```
+    /// use viscera::body::Body;
+    /// use viscera::dynamics::quasi_static::QuasiStatic;
+    /// use viscera::material::{NeoHookean, Tissue};
+    /// use viscera::mesh::{Region, TetMesh};
+    /// use viscera::model::TotalLagrangian;
+    /// use viscera::solver::Iterative;
+    /// use viscera::world::{World, WorldConfig};
+    ///
+    /// let mesh = TetMesh::box_grid([2, 2, 8], [0.1, 0.1, 0.4]); // m
+    /// let tissue = Tissue::uniform(NeoHookean::from_young_poisson(10e3, 0.45)?); // Pa
+    /// let mut world = World::<f64>::new(WorldConfig { gravity: [0.0, -0.5, 0.0], ..WorldConfig::default() })?;
+    /// let bar = world.add(
+    ///     Body::new(mesh, 1000.0 /* kg/m³ */)
+    ///         .model(TotalLagrangian::new(tissue))
+    ///         .fix(Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0)),
+    /// )?;
+    /// let report = world.settle(bar, &QuasiStatic::default(), &mut Iterative::default())?;
+    /// assert!(report.steps.last().and_then(|step| step.residuals.last()).is_some_and(|&residual| residual <= 1e-10));
+    /// // What fixes the bar carries its weight of 2 N.
+    /// assert!((world.observe(bar).reaction.y - 2.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`QuasiStatic::solve`].
     pub fn settle(
