@@ -20,6 +20,7 @@
 //! cells: Puso, Solberg, Int. J. Numer. Meth. Engng 67 (2006), 841, here without the law.
 
 mod points;
+mod rest;
 
 use self::points::NodalPoints;
 use super::registry::Claims;

@@ -1,16 +1,18 @@
 //! The nodes as points of integration: each sees the nodes around it through the gradients g_ab of its mean deformation.
 
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use fearless_simd::{Simd, dispatch};
 
-use super::super::block_sink::add_block;
-use super::super::block_table::BlockTable;
-use super::super::tet_loop::{RestTet, gather_corner};
-use super::super::{BlockSink, ModelError, Scratch};
+use super::rest::{Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, dispatch_level};
-use crate::mesh::{TetMesh, cells_of_nodes};
+use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, baseline, dispatch_level};
+use crate::mesh::TetMesh;
+use crate::model::block_sink::add_block;
+use crate::model::block_table::BlockTable;
+use crate::model::tet_loop::gather_corner;
+use crate::model::{BlockSink, ModelError, Scratch};
 
 /// Points whose numbers of neighbours are sorted together, in batches: it fills the lanes, and a wider window would
 /// take neighbours apart.
@@ -18,7 +20,7 @@ const WINDOW: usize = 32;
 /// The most parameters of a law.
 const MAX_PARAMETERS: usize = 8;
 
-/// Points in batches of lanes, of the law `L`. A point is a node and one of the tissues around it.
+/// Points in batches of lanes, of the law `L`.
 #[derive(Debug)]
 pub(super) struct NodalPoints<T: Scalar, L> {
     /// The neighbours of batch b are the entries `starts[b]..starts[b + 1]`, the node itself first. Lanes with fewer
@@ -32,22 +34,14 @@ pub(super) struct NodalPoints<T: Scalar, L> {
     springs: Vec<T>,
     /// V_a [m³], s μ V_a [J], then the law's parameters.
     constants: BlockTable<T>,
-    rest: Rest,
-    law: PhantomData<L>,
-}
-
-/// What the gradients are computed from when cells are removed.
-#[derive(Clone, Debug)]
-struct Rest {
-    mesh: TetMesh,
-    cells_at_nodes: (Vec<u32>, Vec<u32>),
+    rest: Arc<Rest>,
+    /// Which cells are gone.
     removed: Vec<bool>,
-    /// Which tissue a cell is of.
-    tissues: Vec<u32>,
-    /// s μ of each tissue [Pa].
-    shares: Vec<f64>,
-    /// Node and tissue of each point.
-    points: Vec<(u32, u32)>,
+    /// Points that have lost a cell and are not written yet; none, between calls.
+    touched: Vec<bool>,
+    /// Memory for the sums of a point: cuts ask for none.
+    sums: Vec<(Vec3<f64>, f64)>,
+    law: PhantomData<L>,
 }
 
 impl<T: Scalar, L> Clone for NodalPoints<T, L> {
@@ -58,126 +52,43 @@ impl<T: Scalar, L> Clone for NodalPoints<T, L> {
             gradients: self.gradients.clone(),
             springs: self.springs.clone(),
             constants: self.constants.clone(),
-            rest: self.rest.clone(),
+            rest: Arc::clone(&self.rest),
+            removed: self.removed.clone(),
+            touched: self.touched.clone(),
+            sums: self.sums.clone(),
             law: PhantomData,
         }
-    }
-}
-
-impl Rest {
-    /// The points of `mesh`, where `share` is s μ of a cell [Pa]; and a cell of each tissue.
-    fn new(mesh: &TetMesh, tissue: &Tissue, share: impl Fn(usize) -> f64) -> Result<(Self, Vec<usize>), ModelError> {
-        mesh.check_indices()?;
-        let cells = mesh.cells.len();
-        (0..cells).try_for_each(|cell| RestTet::new(mesh, cell).map(|_| ()))?;
-        let mut examples: Vec<usize> = Vec::new();
-        let mut tissues = vec![0; cells];
-        if tissue.is_uniform() {
-            examples.push(0);
-        } else {
-            let bits = |cell: usize| tissue.values(cell).iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-            let mut known = std::collections::BTreeMap::new();
-            for (cell, number) in tissues.iter_mut().enumerate() {
-                *number = *known.entry(bits(cell)).or_insert_with(|| {
-                    examples.push(cell);
-                    examples.len() as u32 - 1
-                });
-            }
-        }
-        let cells_at_nodes = cells_of_nodes(mesh);
-        let mut rest = Self {
-            mesh: TetMesh::new(mesh.nodes.clone(), mesh.cells.clone()),
-            cells_at_nodes,
-            removed: vec![false; cells],
-            tissues,
-            shares: examples.iter().map(|&cell| share(cell)).collect(),
-            points: Vec::new(),
-        };
-        for node in 0..mesh.nodes.len() as u32 {
-            let mut around: Vec<u32> = rest.cells_at(node).map(|cell| rest.tissues[cell]).collect();
-            around.sort_unstable();
-            around.dedup();
-            rest.points.extend(around.into_iter().map(|tissue| (node, tissue)));
-        }
-        Ok((rest, examples))
-    }
-
-    fn cells_at(&self, node: u32) -> impl Iterator<Item = usize> + '_ {
-        let (starts, cells) = &self.cells_at_nodes;
-        let span = starts[node as usize] as usize..starts[node as usize + 1] as usize;
-        cells[span].iter().map(|&cell| cell as usize).filter(|&cell| !self.removed[cell])
-    }
-
-    /// Nodes of the cells of a point, its own first.
-    fn neighbours(&self, point: usize) -> Vec<u32> {
-        let (node, tissue) = self.points[point];
-        let cells = self.cells_at(node).filter(|&cell| self.tissues[cell] == tissue);
-        let mut around: Vec<u32> =
-            cells.flat_map(|cell| self.mesh.cells[cell]).filter(|&other| other != node).collect();
-        around.sort_unstable();
-        around.dedup();
-        around.insert(0, node);
-        around
-    }
-
-    /// V_a, and of each of `neighbours` V_a g_ab and −Σ_e V_e ∇N_a·∇N_b.
-    fn weigh(&self, point: usize, neighbours: &[u32]) -> (f64, Vec<(Vec3<f64>, f64)>) {
-        let (node, tissue) = self.points[point];
-        let mut volume = 0.0;
-        let mut sums = vec![(Vec3::ZERO, 0.0); neighbours.len()];
-        for cell in self.cells_at(node).filter(|&cell| self.tissues[cell] == tissue) {
-            let rest = RestTet::measure(&self.mesh, cell);
-            let share = rest.volume / 4.0;
-            volume += share;
-            let (corners, gradients) = (self.mesh.cells[cell], rest.gradients());
-            let own =
-                corners.iter().zip(gradients).find(|(corner, _)| **corner == node).map_or(Vec3::ZERO, |(_, own)| own);
-            for (corner, gradient) in corners.into_iter().zip(gradients) {
-                if let Some(entry) = neighbours.iter().position(|&other| other == corner) {
-                    sums[entry].0 += gradient * share;
-                    sums[entry].1 -= gradient.dot(own) * rest.volume;
-                }
-            }
-        }
-        (volume, sums)
     }
 }
 
 impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     /// The points of `mesh`, where `share` is s μ of a cell [Pa].
     pub(super) fn new(mesh: &TetMesh, tissue: &Tissue, share: impl Fn(usize) -> f64) -> Result<Self, ModelError> {
-        let (mut rest, examples) = Rest::new(mesh, tissue, share)?;
-        let mut lists: Vec<(Vec<u32>, (u32, u32))> =
-            (0..rest.points.len()).map(|point| (rest.neighbours(point), rest.points[point])).collect();
-        for window in lists.chunks_mut(WINDOW * T::LANES) {
-            window.sort_by_key(|(neighbours, _)| std::cmp::Reverse(neighbours.len()));
+        let (mut rest, mut points) = Rest::new(mesh, tissue, share)?;
+        for window in points.chunks_mut(WINDOW * T::LANES) {
+            window.sort_by_key(|around| std::cmp::Reverse(around.nodes.len()));
         }
-        rest.points = lists.iter().map(|&(_, point)| point).collect();
+        rest.number_points(&points);
+        let longest = points.iter().map(|around| around.nodes.len()).max().unwrap_or(0);
         let mut model = Self {
             starts: vec![0],
             nodes: Vec::new(),
             gradients: Vec::new(),
             springs: Vec::new(),
-            constants: BlockTable::new(T::LANES, lists.len(), 2 + L::PARAMETERS.len(), T::ZERO),
-            rest,
+            constants: BlockTable::new(T::LANES, points.len(), 2 + L::PARAMETERS.len(), T::ZERO),
+            rest: Arc::new(rest),
+            removed: vec![false; mesh.cells.len()],
+            touched: vec![false; points.len()],
+            sums: vec![(Vec3::ZERO, 0.0); longest],
             law: PhantomData,
         };
-        for batch in lists.chunks(T::LANES) {
-            let longest = batch.iter().map(|(list, _)| list.len()).max().unwrap_or(0);
-            for entry in 0..longest {
-                let at = |lane: usize| {
-                    let (list, (node, _)) = &batch[lane.min(batch.len() - 1)];
-                    list.get(entry).copied().unwrap_or(*node)
-                };
-                model.nodes.extend((0..T::LANES).map(at));
-            }
-            model.starts.push((model.nodes.len() / T::LANES) as u32);
-        }
+        points.chunks(T::LANES).for_each(|batch| model.push_batch(batch));
         model.gradients = vec![T::ZERO; 3 * model.nodes.len()];
         model.springs = vec![T::ZERO; model.nodes.len()];
         for row in 0..model.constants.padded_rows() {
-            let point = row.min(lists.len() - 1);
-            let values = tissue.values(examples[model.rest.points[point].1 as usize]);
+            // Padding repeats the last point, with a volume of zero.
+            let point = row.min(points.len() - 1);
+            let values = tissue.values(model.rest.example(point));
             let numbers = [0.0; 2].into_iter().chain(values.iter().copied());
             model.constants.set_row(row, numbers.map(T::from_f64));
             model.write(row, point);
@@ -185,25 +96,37 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         Ok(model)
     }
 
-    /// Writes volume and gradients of a point into a row; a row of padding keeps a volume of zero.
-    fn write(&mut self, row: usize, point: usize) {
-        let (batch, lane) = (row / T::LANES, row % T::LANES);
-        let entries = self.starts[batch] as usize..self.starts[batch + 1] as usize;
-        let mut list: Vec<u32> = entries.clone().map(|entry| self.nodes[entry * T::LANES + lane]).collect();
-        let length = 1 + list[1..].iter().take_while(|&&node| node != list[0]).count();
-        list.truncate(length);
-        let (volume, sums) = self.rest.weigh(point, &list);
-        let there = row == point && volume > 0.0;
-        let volume_here = if there { volume } else { 0.0 };
-        let share = self.rest.shares[self.rest.points[point].1 as usize];
-        *self.constants.get_mut(row, 0) = T::from_f64(volume_here);
-        *self.constants.get_mut(row, 1) = T::from_f64(share * volume_here);
-        for (entry, &(_, sum)) in entries.clone().zip(&sums).skip(1) {
-            self.springs[entry * T::LANES + lane] = T::from_f64(if row == point { share * sum } else { 0.0 });
+    /// Makes room for a batch, as long as its longest list.
+    fn push_batch(&mut self, batch: &[Neighbourhood]) {
+        let longest = batch.iter().map(|around| around.nodes.len()).max().unwrap_or(0);
+        for entry in 0..longest {
+            let at = |lane: usize| {
+                let Neighbourhood { point, nodes } = &batch[lane.min(batch.len() - 1)];
+                nodes.get(entry).copied().unwrap_or(point.node)
+            };
+            self.nodes.extend((0..T::LANES).map(at));
         }
-        // A point that has lost all its cells keeps its gradients: its deformation stays as harmless as it was.
-        if volume > 0.0 {
-            for (entry, (sum, _)) in entries.zip(sums) {
+        self.starts.push((self.nodes.len() / T::LANES) as u32);
+    }
+
+    /// Writes volume, gradients and springs of a point into a row.
+    fn write(&mut self, row: usize, point: usize) {
+        let (first, lane) = (self.starts[row / T::LANES] as usize, row % T::LANES);
+        let end = self.starts[row / T::LANES + 1] as usize;
+        let node = |entry: usize| self.nodes[(first + entry) * T::LANES + lane];
+        let length = 1 + (1..end - first).take_while(|&entry| node(entry) != node(0)).count();
+        let sums = &mut self.sums[..length];
+        let volume = self.rest.weigh(point, &self.removed, node, sums);
+        let is_padding = row != point;
+        let (share, weight) = (self.rest.share(point), if is_padding { 0.0 } else { 1.0 });
+        *self.constants.get_mut(row, 0) = T::from_f64(weight * volume);
+        *self.constants.get_mut(row, 1) = T::from_f64(weight * share * volume);
+        for (entry, &(sum, spring)) in sums.iter().enumerate() {
+            let entry = first + entry;
+            let spring = if entry == first { 0.0 } else { weight * share * spring };
+            self.springs[entry * T::LANES + lane] = T::from_f64(spring);
+            // A point that has lost all its cells keeps its gradients: its deformation stays as harmless as it was.
+            if volume > 0.0 {
                 for axis in 0..3 {
                     self.gradients[(3 * entry + axis) * T::LANES + lane] = T::from_f64(sum[axis] / volume);
                 }
@@ -211,15 +134,18 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         }
     }
 
+    /// Takes cells out: the points of their corners are weighed again, whatever the size of the mesh.
     pub(super) fn remove_cells(&mut self, cells: &[u32]) {
-        let mut touched = vec![false; self.rest.mesh.nodes.len()];
+        let rest = Arc::clone(&self.rest);
         for &cell in cells {
-            self.rest.removed[cell as usize] = true;
-            self.rest.mesh.cells[cell as usize].into_iter().for_each(|node| touched[node as usize] = true);
+            self.removed[cell as usize] = true;
+            rest.points_of(cell as usize).for_each(|point| self.touched[point] = true);
         }
-        for point in 0..self.rest.points.len() {
-            if touched[self.rest.points[point].0 as usize] {
-                self.write(point, point);
+        for &cell in cells {
+            for point in rest.points_of(cell as usize) {
+                if std::mem::replace(&mut self.touched[point], false) {
+                    self.write(point, point);
+                }
             }
         }
     }
@@ -252,7 +178,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     pub(super) fn add_nodal_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
-        dispatch!(dispatch_level(), simd => self.add_blocks_with(simd, &scratch.nodal, sink));
+        self.add_blocks_with(baseline(), &scratch.nodal, sink);
     }
 
     /// The entries and the constants of each batch.

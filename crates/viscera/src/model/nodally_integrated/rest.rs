@@ -1,0 +1,162 @@
+//! The points at rest, and what cuts have left of the cells around them.
+
+use crate::material::Tissue;
+use crate::math::Vec3;
+use crate::mesh::{TetMesh, cells_of_nodes};
+use crate::model::ModelError;
+use crate::model::tet_loop::RestTet;
+
+/// What no cut changes. A point is a node and one of the tissues around it.
+#[derive(Debug)]
+pub(super) struct Rest {
+    pub(super) mesh: TetMesh,
+    cells_at_nodes: (Vec<u32>, Vec<u32>),
+    /// Which tissue a cell is of.
+    tissues: Vec<u32>,
+    /// A cell of each tissue.
+    examples: Vec<usize>,
+    /// s μ of each tissue [Pa].
+    shares: Vec<f64>,
+    /// Node and tissue of each point.
+    points: Vec<Point>,
+    /// The points of node n are `points_at_nodes.1[starts[n]..starts[n + 1]]`.
+    points_at_nodes: (Vec<u32>, Vec<u32>),
+}
+
+/// A node and one of the tissues around it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub(super) node: u32,
+    tissue: u32,
+}
+
+/// A point with the nodes around it, its own first.
+pub(super) struct Neighbourhood {
+    pub(super) point: Point,
+    pub(super) nodes: Vec<u32>,
+}
+
+impl Rest {
+    /// The points of `mesh`, where `share` is s μ of a cell [Pa], and their neighbourhoods, in the order of the nodes.
+    pub(super) fn new(
+        mesh: &TetMesh,
+        tissue: &Tissue,
+        share: impl Fn(usize) -> f64,
+    ) -> Result<(Self, Vec<Neighbourhood>), ModelError> {
+        mesh.check_indices()?;
+        let cells = mesh.cells.len();
+        (0..cells).try_for_each(|cell| RestTet::new(mesh, cell).map(|_| ()))?;
+        let (tissues, examples) = kinds_of_tissue(cells, tissue);
+        let rest = Self {
+            mesh: TetMesh::new(mesh.nodes.clone(), mesh.cells.clone()),
+            cells_at_nodes: cells_of_nodes(mesh),
+            shares: examples.iter().map(|&cell| share(cell)).collect(),
+            tissues,
+            examples,
+            points: Vec::new(),
+            points_at_nodes: (Vec::new(), Vec::new()),
+        };
+        let mut neighbourhoods = Vec::new();
+        for node in 0..mesh.nodes.len() as u32 {
+            let mut around: Vec<u32> = rest.cells_at(node).map(|cell| rest.tissues[cell]).collect();
+            around.sort_unstable();
+            around.dedup();
+            neighbourhoods.extend(around.into_iter().map(|tissue| rest.neighbourhood(Point { node, tissue })));
+        }
+        Ok((rest, neighbourhoods))
+    }
+
+    /// Numbers the points as they stand in `neighbourhoods`.
+    pub(super) fn number_points(&mut self, neighbourhoods: &[Neighbourhood]) {
+        self.points = neighbourhoods.iter().map(|around| around.point).collect();
+        let mut by_node: Vec<u32> = (0..self.points.len() as u32).collect();
+        by_node.sort_by_key(|&point| self.points[point as usize].node);
+        let mut starts = vec![0; self.mesh.nodes.len() + 1];
+        self.points.iter().for_each(|point| starts[point.node as usize + 1] += 1);
+        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
+        self.points_at_nodes = (starts, by_node);
+    }
+
+    fn neighbourhood(&self, point: Point) -> Neighbourhood {
+        let cells = self.cells_at(point.node).filter(|&cell| self.tissues[cell] == point.tissue);
+        let mut nodes: Vec<u32> =
+            cells.flat_map(|cell| self.mesh.cells[cell]).filter(|&other| other != point.node).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.insert(0, point.node);
+        Neighbourhood { point, nodes }
+    }
+
+    fn cells_at(&self, node: u32) -> impl Iterator<Item = usize> + '_ {
+        let (starts, cells) = &self.cells_at_nodes;
+        let span = starts[node as usize] as usize..starts[node as usize + 1] as usize;
+        cells[span].iter().map(|&cell| cell as usize)
+    }
+
+    /// The points of a cell's corners.
+    pub(super) fn points_of(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        let (starts, points) = &self.points_at_nodes;
+        self.mesh.cells[cell].into_iter().filter_map(move |node| {
+            let span = starts[node as usize] as usize..starts[node as usize + 1] as usize;
+            let mut own = points[span].iter().map(|&point| point as usize);
+            own.find(|&point| self.points[point].tissue == self.tissues[cell])
+        })
+    }
+
+    /// A cell of the point's tissue.
+    pub(super) fn example(&self, point: usize) -> usize {
+        self.examples[self.points[point].tissue as usize]
+    }
+
+    /// s μ of the point's tissue [Pa].
+    pub(super) fn share(&self, point: usize) -> f64 {
+        self.shares[self.points[point].tissue as usize]
+    }
+
+    /// V_a of a point without the cells that are `removed`; and of each entry of `sums`, which stands for the node that
+    /// `neighbour` gives, V_a g_ab and −Σ_e V_e ∇N_a·∇N_b.
+    pub(super) fn weigh(
+        &self,
+        point: usize,
+        removed: &[bool],
+        neighbour: impl Fn(usize) -> u32,
+        sums: &mut [(Vec3<f64>, f64)],
+    ) -> f64 {
+        let Point { node, tissue } = self.points[point];
+        let mut volume = 0.0;
+        sums.fill((Vec3::ZERO, 0.0));
+        for cell in self.cells_at(node).filter(|&cell| !removed[cell] && self.tissues[cell] == tissue) {
+            let rest = RestTet::measure(&self.mesh, cell);
+            let share = rest.volume / 4.0;
+            volume += share;
+            let (corners, gradients) = (self.mesh.cells[cell], rest.gradients());
+            let own =
+                corners.iter().zip(gradients).find(|(corner, _)| **corner == node).map_or(Vec3::ZERO, |(_, own)| own);
+            for (corner, gradient) in corners.into_iter().zip(gradients) {
+                if let Some(entry) = (0..sums.len()).find(|&entry| neighbour(entry) == corner) {
+                    sums[entry].0 += gradient * share;
+                    sums[entry].1 -= gradient.dot(own) * rest.volume;
+                }
+            }
+        }
+        volume
+    }
+}
+
+/// Cells of the same parameters, to the last bit, are of one tissue: its number for each cell, and a cell of each tissue.
+fn kinds_of_tissue(cells: usize, tissue: &Tissue) -> (Vec<u32>, Vec<usize>) {
+    let mut numbers = vec![0; cells];
+    if tissue.is_uniform() {
+        return (numbers, vec![0]);
+    }
+    let bits = |cell: usize| tissue.values(cell).iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let mut examples: Vec<usize> = Vec::new();
+    let mut known = std::collections::BTreeMap::new();
+    for (cell, number) in numbers.iter_mut().enumerate() {
+        *number = *known.entry(bits(cell)).or_insert_with(|| {
+            examples.push(cell);
+            examples.len() as u32 - 1
+        });
+    }
+    (numbers, examples)
+}
