@@ -1,7 +1,7 @@
 /// What implicit steps did; of several bodies, the worst.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImplicitReport {
-    /// Iterations of Newton's method; 1 for a linearised step.
+    /// Iterations of Newton's method; 1 for a linearised step, unless that said nothing.
     pub newton_iterations: u32,
     /// Iterations of the conjugate gradient, over all iterations of Newton's method.
     pub linear_iterations: u32,

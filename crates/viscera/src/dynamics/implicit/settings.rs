@@ -1,4 +1,5 @@
 use super::Scheme;
+use super::newton::INSTEAD;
 use crate::solver::Stop;
 
 /// Settings of implicit steps. By default linearised backward Euler, without a matrix in memory, to 1e-4 in at most 100
@@ -18,7 +19,8 @@ pub struct Implicit {
 /// How the non-linear equations of a step are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Newton {
-    /// One linear solve at the beginning of the step.
+    /// One linear solve at the beginning of the step; where that meets negative curvature or goes astray, up to forty with a
+    /// line search.
     #[default]
     Linearised,
     /// Newton's method with a line search.
@@ -45,7 +47,7 @@ impl Newton {
     /// The most iterations.
     pub(super) fn at_most(self) -> u32 {
         match self {
-            Self::Linearised => 1,
+            Self::Linearised => INSTEAD.1,
             Self::Full { at_most, .. } => at_most,
         }
     }
