@@ -7,7 +7,8 @@
 //! Range: strains and rotations of a few per cent. A rotation of φ gives a false strain of 1 − cos φ, so a bent organ
 //! swells: use [`StVenantKirchhoff`](super::StVenantKirchhoff) there.
 
-use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness, StrainMeasure, small_strain};
+use super::lame_law::lame_law;
+use super::{Law, StrainMeasure, small_strain};
 use crate::math::{Mat3, Real, Sym3};
 
 /// Parameters λ, μ [Pa].
@@ -19,20 +20,7 @@ pub struct LinearElastic<R = f64> {
     pub mu: R,
 }
 
-impl LinearElastic {
-    /// From the Lamé parameters.
-    pub fn new(lame: Lame) -> Self {
-        Self { lambda: lame.lambda, mu: lame.mu }
-    }
-
-    /// From Young's modulus [Pa] and Poisson's ratio.
-    ///
-    /// # Errors
-    /// As [`Lame::from_young_poisson`].
-    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
-        Lame::from_young_poisson(young, poisson).map(Self::new)
-    }
-}
+lame_law!(LinearElastic, "linear", objective: false, quadratic: Some(StrainMeasure::Small));
 
 impl<R: Real> LinearElastic<R> {
     /// σ(ε) = λ tr(ε) I + 2μ ε.
@@ -69,37 +57,4 @@ impl<R: Real> Law<R> for LinearElastic<R> {
 #[inline(always)]
 pub(super) fn isotropic_bound<R: Real>(lambda: R, mu: R) -> R {
     (lambda * lambda.like(3.0)).max(lambda.zero_like()) + mu.double()
-}
-
-impl LawFamily for LinearElastic {
-    type At<R: Real> = LinearElastic<R>;
-
-    const NAME: &'static str = "linear";
-    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
-    const OBJECTIVE: bool = false;
-
-    #[inline(always)]
-    fn at<R: Real>(values: &[R]) -> LinearElastic<R> {
-        LinearElastic { lambda: values[0], mu: values[1] }
-    }
-
-    fn from_values(values: &[f64]) -> Self {
-        Self::at(values)
-    }
-
-    fn values(&self) -> Vec<f64> {
-        vec![self.lambda, self.mu]
-    }
-
-    fn example() -> Self {
-        Self::new(Lame::EXAMPLE)
-    }
-
-    fn at_rest(&self) -> RestStiffness {
-        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
-    }
-
-    fn quadratic(&self) -> Option<QuadraticLaw> {
-        Some(QuadraticLaw { strain: StrainMeasure::Small, stiffness: self.at_rest() })
-    }
 }

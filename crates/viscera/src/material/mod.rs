@@ -1,10 +1,11 @@
 //! Laws: how tissue stores energy when it is deformed. One law is one file; `registry.rs` is the only list of them.
 //!
-//! Adding a law: a file with a struct of parameters generic over [`Real`], [`Law`] and [`LawFamily`] for it, and one line
-//! in the registry. Conformance tests, scenes and force models follow from there.
+//! Adding a law: a file with a struct of parameters generic over [`Real`], [`Law`] and [`LawFamily`] for it (`lame_law!` where λ
+//! and μ are all), and one line in the registry. Conformance tests, scenes and force models follow from there.
 
 mod error;
 mod lame;
+mod lame_law;
 mod linear;
 mod neo_hookean;
 mod parameter;

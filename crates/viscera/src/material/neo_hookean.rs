@@ -9,7 +9,8 @@
 //! Source: Bonet, Wood, Nonlinear continuum mechanics for finite element analysis (2008), section 6.5.
 //! Range: J > 0.3 exactly as printed; beyond, see above.
 
-use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness};
+use super::Law;
+use super::lame_law::lame_law;
 use crate::math::{Mat3, Real};
 
 /// Where the parabola takes over: three tenths of the volume is beyond any tissue, and g'' has grown to 28 times its
@@ -25,20 +26,7 @@ pub struct NeoHookean<R = f64> {
     pub mu: R,
 }
 
-impl NeoHookean {
-    /// From the Lamé parameters of small strains.
-    pub fn new(lame: Lame) -> Self {
-        Self { lambda: lame.lambda, mu: lame.mu }
-    }
-
-    /// From Young's modulus [Pa] and Poisson's ratio of small strains.
-    ///
-    /// # Errors
-    /// As [`Lame::from_young_poisson`].
-    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
-        Lame::from_young_poisson(young, poisson).map(Self::new)
-    }
-}
+lame_law!(NeoHookean, "neo-hookean", objective: true, quadratic: None);
 
 /// What the law needs at an F.
 struct At<R> {
@@ -168,37 +156,4 @@ pub(super) fn curvature_of_determinant<R: Real>(pressure: R, determinant: R, squ
     let most = square.like(2.0 / 3.0_f64.sqrt());
     let upright = R::select(determinant.less_than(zero), most, square.like(1.0));
     pressure.abs() * R::select(pressure.less_than(zero), upright, most) * square.sqrt()
-}
-
-impl LawFamily for NeoHookean {
-    type At<R: Real> = NeoHookean<R>;
-
-    const NAME: &'static str = "neo-hookean";
-    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
-    const OBJECTIVE: bool = true;
-
-    #[inline(always)]
-    fn at<R: Real>(values: &[R]) -> NeoHookean<R> {
-        NeoHookean { lambda: values[0], mu: values[1] }
-    }
-
-    fn from_values(values: &[f64]) -> Self {
-        Self::at(values)
-    }
-
-    fn values(&self) -> Vec<f64> {
-        vec![self.lambda, self.mu]
-    }
-
-    fn example() -> Self {
-        Self::new(Lame::EXAMPLE)
-    }
-
-    fn at_rest(&self) -> RestStiffness {
-        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
-    }
-
-    fn quadratic(&self) -> Option<QuadraticLaw> {
-        None
-    }
 }

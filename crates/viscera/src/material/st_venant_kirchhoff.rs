@@ -7,8 +7,9 @@
 //! Range: moderate strain. Softens in compression (confined: unstable below a stretch of 1/√3) and cannot tell F from
 //! its mirror image, so an inverted element stays inverted.
 
+use super::lame_law::lame_law;
 use super::linear::isotropic_bound;
-use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness, StrainMeasure, green_strain};
+use super::{Law, StrainMeasure, green_strain};
 use crate::math::{Mat3, Real, Sym3};
 
 /// Parameters λ, μ [Pa].
@@ -20,20 +21,7 @@ pub struct StVenantKirchhoff<R = f64> {
     pub mu: R,
 }
 
-impl StVenantKirchhoff {
-    /// From the Lamé parameters.
-    pub fn new(lame: Lame) -> Self {
-        Self { lambda: lame.lambda, mu: lame.mu }
-    }
-
-    /// From Young's modulus [Pa] and Poisson's ratio.
-    ///
-    /// # Errors
-    /// As [`Lame::from_young_poisson`].
-    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
-        Lame::from_young_poisson(young, poisson).map(Self::new)
-    }
-}
+lame_law!(StVenantKirchhoff, "st-venant-kirchhoff", objective: true, quadratic: Some(StrainMeasure::Green));
 
 impl<R: Real> StVenantKirchhoff<R> {
     /// Second Piola–Kirchhoff stress S(E), linear in E.
@@ -68,38 +56,5 @@ impl<R: Real> Law<R> for StVenantKirchhoff<R> {
         let stress = self.second_stress(green_strain(f)).largest_eigenvalue_bound();
         let stretch = f.gram().largest_eigenvalue_bound();
         stretch.mul_add(isotropic_bound(self.lambda, self.mu), stress.max(stress.zero_like()))
-    }
-}
-
-impl LawFamily for StVenantKirchhoff {
-    type At<R: Real> = StVenantKirchhoff<R>;
-
-    const NAME: &'static str = "st-venant-kirchhoff";
-    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
-    const OBJECTIVE: bool = true;
-
-    #[inline(always)]
-    fn at<R: Real>(values: &[R]) -> StVenantKirchhoff<R> {
-        StVenantKirchhoff { lambda: values[0], mu: values[1] }
-    }
-
-    fn from_values(values: &[f64]) -> Self {
-        Self::at(values)
-    }
-
-    fn values(&self) -> Vec<f64> {
-        vec![self.lambda, self.mu]
-    }
-
-    fn example() -> Self {
-        Self::new(Lame::EXAMPLE)
-    }
-
-    fn at_rest(&self) -> RestStiffness {
-        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
-    }
-
-    fn quadratic(&self) -> Option<QuadraticLaw> {
-        Some(QuadraticLaw { strain: StrainMeasure::Green, stiffness: self.at_rest() })
     }
 }

@@ -11,8 +11,9 @@
 //! Range: any deformation. Nothing is infinite at J = 0, and an inverted element is driven back; J = 1 is kept as well
 //! as λ/μ asks for.
 
+use super::Law;
+use super::lame_law::lame_law;
 use super::neo_hookean::{curvature_of_determinant, felt_square};
-use super::{Lame, Law, LawFamily, MaterialError, Parameter, QuadraticLaw, RestStiffness};
 use crate::math::{Mat3, Real};
 
 /// Parameters λ, μ [Pa] of small strains.
@@ -24,20 +25,7 @@ pub struct StableNeoHookean<R = f64> {
     pub mu: R,
 }
 
-impl StableNeoHookean {
-    /// From the Lamé parameters of small strains.
-    pub fn new(lame: Lame) -> Self {
-        Self { lambda: lame.lambda, mu: lame.mu }
-    }
-
-    /// From Young's modulus [Pa] and Poisson's ratio of small strains.
-    ///
-    /// # Errors
-    /// As [`Lame::from_young_poisson`].
-    pub fn from_young_poisson(young: f64, poisson: f64) -> Result<Self, MaterialError> {
-        Lame::from_young_poisson(young, poisson).map(Self::new)
-    }
-}
+lame_law!(StableNeoHookean, "stable-neo-hookean", objective: true, quadratic: None);
 
 impl<R: Real> StableNeoHookean<R> {
     /// λ' = λ + 5/6 μ and μ' = 4/3 μ [Pa], the parameters of the formulae.
@@ -96,38 +84,5 @@ impl<R: Real> Law<R> for StableNeoHookean<R> {
         let shape = mu * (one - share) + (mu * share.squared() * square).double();
         let pressure = lambda * (determinant - one) - mu * mu.like(0.75);
         lambda.mul_add(felt_square(cofactor), shape) + curvature_of_determinant(pressure, determinant, square)
-    }
-}
-
-impl LawFamily for StableNeoHookean {
-    type At<R: Real> = StableNeoHookean<R>;
-
-    const NAME: &'static str = "stable-neo-hookean";
-    const PARAMETERS: &'static [Parameter] = &[Parameter::LAMBDA, Parameter::MU];
-    const OBJECTIVE: bool = true;
-
-    #[inline(always)]
-    fn at<R: Real>(values: &[R]) -> StableNeoHookean<R> {
-        StableNeoHookean { lambda: values[0], mu: values[1] }
-    }
-
-    fn from_values(values: &[f64]) -> Self {
-        Self::at(values)
-    }
-
-    fn values(&self) -> Vec<f64> {
-        vec![self.lambda, self.mu]
-    }
-
-    fn example() -> Self {
-        Self::new(Lame::EXAMPLE)
-    }
-
-    fn at_rest(&self) -> RestStiffness {
-        RestStiffness::isotropic(Lame { lambda: self.lambda, mu: self.mu })
-    }
-
-    fn quadratic(&self) -> Option<QuadraticLaw> {
-        None
     }
 }
