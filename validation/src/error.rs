@@ -23,6 +23,9 @@ pub enum ValidationError {
     /// A step was not made.
     #[error(transparent)]
     Step(#[from] StepError),
+    /// A reference mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] viscera_io::ReadError),
     /// A file cannot be read or written.
     #[error("{path}: {error}", path = path.display())]
     File {

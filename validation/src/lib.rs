@@ -22,6 +22,7 @@ use std::path::PathBuf;
 
 pub use error::ValidationError;
 pub use report::Report;
+pub use setting::Element;
 
 /// How large the meshes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

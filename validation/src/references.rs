@@ -1,8 +1,12 @@
 //! The reference cases, and the meshes that they name.
 
+use std::path::Path;
+
 use serde_json::Value;
 use viscera::math::Vec3;
-use viscera::mesh::{HexMesh, TetMesh, VolumeMesh};
+use viscera::mesh::VolumeMesh;
+
+use crate::ValidationError;
 
 pub(crate) type Vector = Vec3<f64>;
 
@@ -53,27 +57,11 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     list(value).iter().map(number).collect()
 }
 
-/// A mesh that the cases name, in Gmsh 2.2.
-pub(crate) fn mesh(file: &str) -> VolumeMesh {
-    let text = match file {
-        "beam_s_tet4.msh" => reference!("beam_s_tet4.msh"),
-        "beam_s_hex8.msh" => reference!("beam_s_hex8.msh"),
-        "beam_m_tet4.msh" => reference!("beam_m_tet4.msh"),
-        _ => panic!("no case names the mesh {file}"),
-    };
-    let rows = |begin: &'static str, end: &'static str| {
-        let lines = text.lines().skip_while(move |line| *line != begin).skip(2).take_while(move |line| *line != end);
-        lines.map(|line| line.split_whitespace().filter_map(|word| word.parse().ok()).collect::<Vec<f64>>())
-    };
-    let nodes = rows("$Nodes", "$EndNodes").map(|row| Vector::new(row[1], row[2], row[3])).collect();
-    let (mut tets, mut hexes) = (Vec::new(), Vec::new());
-    for row in rows("$Elements", "$EndElements") {
-        let corner = |from_end: usize| row[row.len() - from_end] as u32 - 1;
-        match row[1] as u32 {
-            4 => tets.push(std::array::from_fn(|i| corner(4 - i))),
-            5 => hexes.push(std::array::from_fn(|i| corner(8 - i))),
-            _ => {}
-        }
-    }
-    if hexes.is_empty() { TetMesh::new(nodes, tets).into() } else { HexMesh::new(nodes, hexes).into() }
+/// A mesh that the cases name.
+///
+/// # Errors
+/// [`ValidationError::Mesh`] where the file is not there any more.
+pub(crate) fn mesh(file: &str) -> Result<VolumeMesh, ValidationError> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/viscera/tests/data/references");
+    Ok(viscera_io::read_volume(Path::new(folder).join(file), 1.0)?.mesh)
 }

@@ -2,7 +2,9 @@
 
 use viscera::body::Body;
 use viscera::dynamics::quasi_static::{QuasiStatic, StaticReport};
+use viscera::material::Tissue;
 use viscera::mesh::{CubeCut, HexMesh, Region, TetMesh, VolumeMesh};
+use viscera::model::{NodallyIntegrated, TotalLagrangian};
 use viscera::world::{BodyId, World, WorldConfig};
 use viscera_direct::Cholesky;
 
@@ -48,6 +50,36 @@ impl Cells {
             Self::Ten => "10 tetrahedra",
             Self::Hexahedra => "hexahedra",
         }
+    }
+}
+
+/// A kind of element: cells, and whether the law is asked in them or at the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Element {
+    pub(crate) cells: Cells,
+    /// Whether it is integrated at the nodes.
+    pub nodal: bool,
+}
+
+impl Element {
+    /// Plain tetrahedra in two cuts, hexahedra, and tetrahedra integrated at the nodes.
+    pub(crate) const ALL: [Self; 5] = [
+        Self { cells: Cells::Six, nodal: false },
+        Self { cells: Cells::Ten, nodal: false },
+        Self { cells: Cells::Hexahedra, nodal: false },
+        Self { cells: Cells::Six, nodal: true },
+        Self { cells: Cells::Ten, nodal: true },
+    ];
+
+    pub(crate) fn name(self) -> String {
+        let how = if self.nodal { ", integrated at the nodes" } else { "" };
+        format!("{}{how}", self.cells.name())
+    }
+
+    /// A body of `tissue`, which nodes can be asked for.
+    pub(crate) fn body(self, mesh: VolumeMesh, density: f64, tissue: Tissue) -> Body {
+        let body = Body::new(mesh, density);
+        if self.nodal { body.model(NodallyIntegrated::new(tissue)) } else { body.model(TotalLagrangian::new(tissue)) }
     }
 }
 

@@ -63,7 +63,7 @@ fn case(name: &'static str, text: &str) -> Result<Case, ValidationError> {
     let data = read(text);
     let material = &data["material"];
     let lame = Lame::new(number(&material["lambda_Pa"]), number(&material["mu_Pa"]))?;
-    let body = Body::new(mesh(data["mesh"]["file"].as_str().unwrap_or_default()), number(&material["density_kg_m3"]))
+    let body = Body::new(mesh(data["mesh"]["file"].as_str().unwrap_or_default())?, number(&material["density_kg_m3"]))
         .fix(plane(2, 0.0));
     let mut body = match material["model"].as_str().unwrap_or_default() {
         "stvk" => body.model(TotalLagrangian::new(Tissue::uniform(StVenantKirchhoff::new(lame)))),

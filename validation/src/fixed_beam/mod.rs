@@ -3,15 +3,13 @@
 //! Beam theory: w(x) = q x² (6l² − 4lx + x²)/(24 E I), and at the tip q l⁴/(8 E I), to which shear adds q l²/(2 κ G A)
 //! (Timoshenko). With the paper's load the tip would sink by 471 m; the load here is a ten-thousandth of it.
 
-use viscera::body::Body;
 use viscera::dynamics::quasi_static::QuasiStatic;
 use viscera::material::{LinearElastic, StVenantKirchhoff, Tissue};
-use viscera::model::{NodallyIntegrated, TotalLagrangian};
 
 use crate::plot::{Plot, Scale};
 use crate::references::{CLAMPED_BEAM, Vector, list, number, numbers, read, vector, vectors};
 use crate::report::{Table, brief, ratio};
-use crate::setting::{Cells, Settled, largest_difference, plane};
+use crate::setting::{Cells, Element, Settled, largest_difference, plane};
 use crate::{Report, Size, ValidationError};
 
 const WIDTH: f64 = 4.0;
@@ -52,42 +50,15 @@ pub struct Length {
     pub tips: Vec<(f64, f64)>,
 }
 
-/// A kind of element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Element {
-    cells: Cells,
-    nodal: bool,
-}
-
-impl Element {
-    /// The name in the reference case; none for those that it does not have.
-    fn reference(self) -> Option<&'static str> {
-        match (self.cells, self.nodal) {
-            (Cells::Six, false) => Some("tet6"),
-            (Cells::Ten, false) => Some("tet10_superposed"),
-            (Cells::Hexahedra, false) => Some("hex8"),
-            _ => None,
-        }
-    }
-
-    /// Whether it is one that the paper has as well.
-    pub fn is_plain(self) -> bool {
-        !self.nodal
-    }
-
-    fn name(self) -> String {
-        let how = if self.nodal { ", integrated at the nodes" } else { "" };
-        format!("{}{how}", self.cells.name())
+/// The element's name in the reference case; none for those that it does not have.
+fn reference(element: Element) -> Option<&'static str> {
+    match (element.cells, element.nodal) {
+        (Cells::Six, false) => Some("tet6"),
+        (Cells::Ten, false) => Some("tet10_superposed"),
+        (Cells::Hexahedra, false) => Some("hex8"),
+        _ => None,
     }
 }
-
-const ELEMENTS: [Element; 5] = [
-    Element { cells: Cells::Six, nodal: false },
-    Element { cells: Cells::Ten, nodal: false },
-    Element { cells: Cells::Hexahedra, nodal: false },
-    Element { cells: Cells::Six, nodal: true },
-    Element { cells: Cells::Ten, nodal: true },
-];
 
 fn settle(
     case: &serde_json::Value,
@@ -96,18 +67,16 @@ fn settle(
     cells: [usize; 3],
     length: f64,
 ) -> Result<Settled, ValidationError> {
-    let Element { cells: kind, nodal } = element;
+    let kind = element.cells;
     let young = kind.share() * number(&case["material"]["E_Pa"]);
     let density = kind.share() * number(&case["material"]["density_kg_m3"]);
-    let body = Body::new(kind.fill(cells, [length, WIDTH, HEIGHT]), density).fix(plane(0, 0.0));
-    let body = if nodal {
+    let tissue = if element.nodal {
         // In one linear solve a quadratic law is a linear one.
-        let law = StVenantKirchhoff::from_young_poisson(young, poisson)?;
-        body.model(NodallyIntegrated::new(Tissue::uniform(law)))
+        Tissue::uniform(StVenantKirchhoff::from_young_poisson(young, poisson)?)
     } else {
-        let law = LinearElastic::from_young_poisson(young, poisson)?;
-        body.model(TotalLagrangian::new(Tissue::uniform(law)))
+        Tissue::uniform(LinearElastic::from_young_poisson(young, poisson)?)
     };
+    let body = element.body(kind.fill(cells, [length, WIDTH, HEIGHT]), density, tissue).fix(plane(0, 0.0));
     let gravity = vector(&case["loads"]["gravity_m_s2"]).to_array();
     Settled::new(body, gravity, &QuasiStatic { small_strain: true, ..QuasiStatic::default() })
 }
@@ -121,7 +90,7 @@ pub fn study(size: Size) -> Result<FixedBeam, ValidationError> {
     for expected in list(&case["reference"]["per_nu"]) {
         let poisson = number(&expected["nu"]);
         let converged = -vector(&expected["converged_hex27"]["tip_centre_u_m"]).z;
-        for element in ELEMENTS {
+        for element in Element::ALL {
             for level in 1..=levels {
                 let cells = [40 * level, 4 * level, 2 * level];
                 let beam = settle(&case, element, poisson, cells, LENGTH)?;
@@ -129,7 +98,7 @@ pub fn study(size: Size) -> Result<FixedBeam, ValidationError> {
                     .into_iter()
                     .map(|x| (x, -beam.displacement_at(Vector::new(x, 0.5 * WIDTH, 0.5 * HEIGHT)).z))
                     .collect();
-                let other = element.reference().filter(|_| level == 1);
+                let other = reference(element).filter(|_| level == 1);
                 let other = other.map(|name| vectors(&expected[name]["nodal_displacement_m"]));
                 deflections.push(Deflection {
                     poisson,
@@ -152,7 +121,7 @@ pub fn study(size: Size) -> Result<FixedBeam, ValidationError> {
         let tips = lengths.iter().map(tip).collect::<Result<_, ValidationError>>()?;
         Ok(Length { element, tips })
     };
-    let lengths = ELEMENTS.into_iter().map(tips).collect::<Result<_, ValidationError>>()?;
+    let lengths = Element::ALL.into_iter().map(tips).collect::<Result<_, ValidationError>>()?;
     Ok(FixedBeam { deflections, lengths, references: case })
 }
 

@@ -78,12 +78,12 @@ pub struct Flight {
 pub fn study(size: Size) -> Result<Frequencies, ValidationError> {
     let case = read(MODES);
     let expected = |name: &str| numbers(&case["reference"][name]["first_12_frequencies_Hz"]);
-    let tets = mesh("beam_s_tet4.msh");
+    let tets = mesh("beam_s_tet4.msh")?;
     let spectra = vec![
         spectrum("tetrahedra", &tets, &TotalLagrangian::new(linear()?), Some(expected("tet4_lumped")))?,
         spectrum(
             "hexahedra",
-            &mesh("beam_s_hex8.msh"),
+            &mesh("beam_s_hex8.msh")?,
             &TotalLagrangian::new(linear()?),
             Some(expected("hex8_lumped")),
         )?,
@@ -177,7 +177,7 @@ fn world(step: f64, scheme: Option<Scheme>) -> Result<World<f64>, ValidationErro
 }
 
 fn beam() -> Result<Body, ValidationError> {
-    Ok(Body::new(mesh("beam_s_tet4.msh"), DENSITY).model(TotalLagrangian::new(quadratic()?)))
+    Ok(Body::new(mesh("beam_s_tet4.msh")?, DENSITY).model(TotalLagrangian::new(quadratic()?)))
 }
 
 /// Case E03.

@@ -5,12 +5,11 @@ use viscera::curve::Curve;
 use viscera::dynamics::quasi_static::QuasiStatic;
 use viscera::material::{NeoHookean, Tissue};
 use viscera::mesh::{Region, VolumeMesh};
-use viscera::model::{NodallyIntegrated, TotalLagrangian};
 
 use crate::plot::{Plot, Scale};
 use crate::references::{COOK, TRUTH_CUBE, Vector, list, number, read};
 use crate::report::{Table, ratio};
-use crate::setting::{Cells, Settled, plane};
+use crate::setting::{Element, Settled, plane};
 use crate::{Report, Size, ValidationError};
 
 /// What was found.
@@ -29,39 +28,11 @@ pub struct Convergence {
     pub ratios: Vec<(usize, f64)>,
 }
 
-/// A kind of element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Element {
-    cells: Cells,
-    /// Whether it is integrated at the nodes.
-    pub nodal: bool,
+/// A body of the element, of the law of the references.
+fn neo_hookean(element: Element, mesh: VolumeMesh, young: f64, poisson: f64) -> Result<Body, ValidationError> {
+    let law = NeoHookean::from_young_poisson(element.cells.share() * young, poisson)?;
+    Ok(element.body(mesh, 1000.0, Tissue::uniform(law)))
 }
-
-impl Element {
-    fn name(self) -> String {
-        let how = if self.nodal { ", integrated at the nodes" } else { "" };
-        format!("{}{how}", self.cells.name())
-    }
-
-    /// A body of this element, of the law of the reference.
-    fn body(self, mesh: VolumeMesh, young: f64, poisson: f64) -> Result<Body, ValidationError> {
-        let tissue = Tissue::uniform(NeoHookean::from_young_poisson(self.cells.share() * young, poisson)?);
-        let body = Body::new(mesh, 1000.0);
-        Ok(if self.nodal {
-            body.model(NodallyIntegrated::new(tissue))
-        } else {
-            body.model(TotalLagrangian::new(tissue))
-        })
-    }
-}
-
-const ELEMENTS: [Element; 5] = [
-    Element { cells: Cells::Six, nodal: false },
-    Element { cells: Cells::Ten, nodal: false },
-    Element { cells: Cells::Hexahedra, nodal: false },
-    Element { cells: Cells::Six, nodal: true },
-    Element { cells: Cells::Ten, nodal: true },
-];
 
 /// # Errors
 /// [`ValidationError`] where a solve fails.
@@ -74,7 +45,7 @@ pub fn study(size: Size) -> Result<NearlyIncompressible, ValidationError> {
         Ok(Convergence { element, ratios: levels.iter().map(one).collect::<Result<_, ValidationError>>()? })
     };
     let every = |levels: &[usize], result| {
-        ELEMENTS.into_iter().map(|element| over(levels, element, result)).collect::<Result<_, ValidationError>>()
+        Element::ALL.into_iter().map(|element| over(levels, element, result)).collect::<Result<_, ValidationError>>()
     };
     Ok(NearlyIncompressible { cook: every(cook_levels, cook)?, cube: every(cube_levels, cube)? })
 }
@@ -95,8 +66,7 @@ fn cook(element: Element, cells: usize) -> Result<f64, ValidationError> {
     // Superposed cells show each face of the end twice.
     let shear = element.cells.share() * number(&case["loads"]["shear_traction_y_Pa"]);
     let traction = Curve::constant(Vector::new(0.0, shear, 0.0));
-    let body = element
-        .body(mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
+    let body = neo_hookean(element, mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
         .fix(plane(0, 0.0))
         .slide(Region::All, [0.0, 0.0, 1.0])
         .load(Load::Traction { region: plane(0, 0.048), traction });
@@ -112,8 +82,7 @@ fn cube(element: Element, cells: usize) -> Result<f64, ValidationError> {
     let expected = &list(&case["converged_reference"]["glued_neohooke"])[0];
     let push = Vector::new(0.0, 0.0, -number(&expected["strain"]) * EDGE);
     let mesh = element.cells.fill([cells; 3], [EDGE; 3]);
-    let body = element
-        .body(mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
+    let body = neo_hookean(element, mesh, number(&case["material"]["E_Pa"]), number(&case["material"]["nu"]))?
         .fix(plane(2, 0.0))
         .prescribe(plane(2, EDGE), Curve::constant(push));
     let settled = Settled::new(body, [0.0; 3], &QuasiStatic { tolerance: 1e-8, ..QuasiStatic::default() })?;
