@@ -1,3 +1,4 @@
+use super::{Filter, LinearOperator, Preconditioner, Size};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 
@@ -44,8 +45,29 @@ impl<T: Scalar> BlockJacobi<T> {
 
     /// P⁻¹ r of a node.
     #[inline]
-    pub fn apply(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
+    pub(crate) fn at(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
         self.blocks[node] * residual
+    }
+}
+
+impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
+    fn apply(
+        &mut self,
+        _matrix: &mut dyn LinearOperator<T>,
+        filters: &[Filter<T>],
+        residual: &[Vec3<T>],
+        corrected: &mut [Vec3<T>],
+    ) -> Size {
+        let mut square = 0.0;
+        for node in 0..residual.len() {
+            corrected[node] = filters[node].apply(self.at(node, residual[node]));
+            square += residual[node].dot(corrected[node]).to_f64();
+        }
+        Size { corrected: square, squared_norm: square }
+    }
+
+    fn squared_norm(&self, residual: &[Vec3<T>]) -> f64 {
+        residual.iter().enumerate().map(|(node, &r)| r.dot(self.at(node, r)).to_f64()).sum()
     }
 }
 

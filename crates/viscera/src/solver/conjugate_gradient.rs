@@ -6,7 +6,7 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::{BlockJacobi, Filter, LinearOperator};
+use super::{Filter, LinearOperator, Preconditioner, Size};
 use crate::math::{Scalar, Vec3};
 
 /// When the iteration ends.
@@ -14,7 +14,8 @@ use crate::math::{Scalar, Vec3};
 pub enum Stop {
     /// After this many iterations [≥ 1]: the same time for every step.
     Iterations(u32),
-    /// When the residual, in the norm of the preconditioner, is below `relative` times that of b and A x at the start.
+    /// When the residual, in the norm of the matrix's own inverse blocks on the diagonal, is below `relative` times that of b and
+    /// A x at the start: the same for every preconditioner.
     Tolerance {
         /// Share [> 0, < 1].
         relative: f64,
@@ -62,7 +63,7 @@ pub enum Ending {
 pub struct SolveReport {
     /// Products with the matrix, without the one at the start.
     pub iterations: u32,
-    /// Residual at the end over its scale, in the norm of the preconditioner.
+    /// Residual at the end over its scale, in the norm of [`Stop::Tolerance`].
     pub residual: f64,
     /// How it ended.
     pub ending: Ending,
@@ -77,7 +78,7 @@ pub struct ConjugateGradient<T> {
     history: Vec<f64>,
 }
 
-/// What a solve is about, apart from the matrix.
+/// What a solve is about, apart from the matrix and its preconditioner.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, T> {
     /// Right-hand side b.
@@ -86,8 +87,6 @@ pub struct Problem<'a, T> {
     pub filters: &'a [Filter<T>],
     /// Prescribed values z.
     pub prescribed: &'a [Vec3<T>],
-    /// Preconditioner.
-    pub preconditioner: &'a BlockJacobi<T>,
     /// A positive lower bound of the matrix, one number for each node: its part that comes from the masses.
     pub masses: &'a [T],
 }
@@ -109,21 +108,22 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn solve(
         &mut self,
         matrix: &mut impl LinearOperator<T>,
+        preconditioner: &mut impl Preconditioner<T>,
         problem: &Problem<'_, T>,
         stop: Stop,
         x: &mut [Vec3<T>],
     ) -> SolveReport {
         let filters = problem.filters;
         self.history.clear();
-        let scale = self.start(matrix, problem, x);
-        let mut rho = self.precondition(problem, None);
+        let scale = self.start(matrix, preconditioner, problem, x);
+        let mut size = self.precondition(matrix, preconditioner, problem, None);
         let goal = stop.relative() * scale;
-        self.note(rho, scale);
+        self.note(size.squared_norm, scale);
         let mut ending = Ending::Exhausted;
         let mut iterations = 0;
         let at_most = stop.at_most().min((self.history.capacity() as u32).saturating_sub(1));
         while iterations < at_most {
-            if rho.sqrt() <= goal || rho <= 0.0 {
+            if size.squared_norm.sqrt() <= goal || size.corrected <= 0.0 {
                 ending = Ending::Converged;
                 break;
             }
@@ -135,59 +135,66 @@ impl<T: Scalar> ConjugateGradient<T> {
             let curvature = dot(&self.direction, &self.product);
             if curvature.is_nan() || curvature <= 0.0 {
                 if iterations == 1 {
-                    self.step_against_masses(problem, rho, x);
+                    self.step_against_masses(problem, size.corrected, x);
                 }
                 ending = Ending::NegativeCurvature;
                 break;
             }
-            let length = T::from_f64(rho / curvature);
+            let length = T::from_f64(size.corrected / curvature);
             for node in 0..x.len() {
                 x[node] = self.direction[node].mul_add(length, x[node]);
                 self.residual[node] = self.product[node].mul_add(-length, self.residual[node]);
             }
-            rho = self.precondition(problem, Some(rho));
-            self.note(rho, scale);
+            size = self.precondition(matrix, preconditioner, problem, Some(size));
+            self.note(size.squared_norm, scale);
         }
-        if ending == Ending::Exhausted && rho.sqrt() <= goal {
+        if ending == Ending::Exhausted && size.squared_norm.sqrt() <= goal {
             ending = Ending::Converged;
         }
         SolveReport { iterations, residual: self.history.last().copied().unwrap_or(0.0), ending }
     }
 
     /// Puts x to S·guess + (I − S) z and the residual to S (b − A x); gives the scale of residuals.
-    fn start(&mut self, matrix: &mut impl LinearOperator<T>, problem: &Problem<'_, T>, x: &mut [Vec3<T>]) -> f64 {
+    fn start(
+        &mut self,
+        matrix: &mut impl LinearOperator<T>,
+        preconditioner: &impl Preconditioner<T>,
+        problem: &Problem<'_, T>,
+        x: &mut [Vec3<T>],
+    ) -> f64 {
         for node in 0..x.len() {
             x[node] = problem.filters[node].merge(x[node], problem.prescribed[node]);
         }
         matrix.apply(x, &mut self.product);
-        let (mut of_rhs, mut of_product) = (0.0, 0.0);
         for node in 0..x.len() {
-            let filter = &problem.filters[node];
-            let (rhs, product) = (filter.apply(problem.rhs[node]), filter.apply(self.product[node]));
-            of_rhs += rhs.dot(problem.preconditioner.apply(node, rhs)).to_f64();
-            of_product += product.dot(problem.preconditioner.apply(node, product)).to_f64();
-            self.residual[node] = rhs - product;
+            self.residual[node] = problem.filters[node].apply(problem.rhs[node]);
+            self.product[node] = problem.filters[node].apply(self.product[node]);
+        }
+        let of_rhs = preconditioner.squared_norm(&self.residual);
+        let of_product = preconditioner.squared_norm(&self.product);
+        for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
+            *residual = *residual - product;
         }
         of_rhs.sqrt() + of_product.sqrt()
     }
 
-    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r.
-    fn precondition(&mut self, problem: &Problem<'_, T>, before: Option<f64>) -> f64 {
-        let mut rho = 0.0;
-        for node in 0..self.residual.len() {
-            let residual = self.residual[node];
-            let corrected = problem.filters[node].apply(problem.preconditioner.apply(node, residual));
-            rho += residual.dot(corrected).to_f64();
-            self.product[node] = corrected;
-        }
-        let weight = T::from_f64(before.map_or(0.0, |before| rho / before));
+    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r and the residual's norm.
+    fn precondition(
+        &mut self,
+        matrix: &mut impl LinearOperator<T>,
+        preconditioner: &mut impl Preconditioner<T>,
+        problem: &Problem<'_, T>,
+        before: Option<Size>,
+    ) -> Size {
+        let size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product);
+        let weight = T::from_f64(before.map_or(0.0, |before| size.corrected / before.corrected));
         for (direction, &corrected) in self.direction.iter_mut().zip(&self.product) {
             *direction = match before {
                 Some(_) => direction.mul_add(weight, corrected),
                 None => corrected,
             };
         }
-        rho
+        size
     }
 
     /// x + p ρ/(p·M p): the step along the first direction if the masses were the whole matrix.
@@ -202,8 +209,8 @@ impl<T: Scalar> ConjugateGradient<T> {
         }
     }
 
-    fn note(&mut self, rho: f64, scale: f64) {
-        self.history.push(if scale > 0.0 { rho.max(0.0).sqrt() / scale } else { 0.0 });
+    fn note(&mut self, square: f64, scale: f64) {
+        self.history.push(if scale > 0.0 { square.max(0.0).sqrt() / scale } else { 0.0 });
     }
 }
 

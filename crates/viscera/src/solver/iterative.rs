@@ -58,15 +58,11 @@ impl LinearSolver for Iterative {
         };
         let zeros = vec![Vec3::ZERO; right.len()];
         let mut solution = zeros.clone();
-        let problem = Problem {
-            rhs: right,
-            filters: &system.filters,
-            prescribed: &zeros,
-            preconditioner,
-            masses: &vec![0.0; zeros.len()],
-        };
+        let problem =
+            Problem { rhs: right, filters: &system.filters, prescribed: &zeros, masses: &vec![0.0; zeros.len()] };
         let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
-        let report = conjugate_gradient.solve(&mut system.matrix.clone(), &problem, stop, &mut solution);
+        let report =
+            conjugate_gradient.solve(&mut system.matrix.clone(), preconditioner, &problem, stop, &mut solution);
         match report.ending {
             Ending::Converged => right.copy_from_slice(&solution),
             Ending::NegativeCurvature => return Err(SolverError::NotPositiveDefinite),

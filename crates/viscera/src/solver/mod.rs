@@ -7,6 +7,7 @@ mod conjugate_gradient;
 mod filter;
 mod iterative;
 mod linear_solver;
+mod preconditioner;
 mod system;
 
 pub use block_jacobi::BlockJacobi;
@@ -16,6 +17,7 @@ pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, St
 pub use filter::Filter;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
+pub use preconditioner::{Preconditioner, Size};
 pub use system::System;
 
 use crate::math::{Scalar, Vec3};

@@ -56,10 +56,10 @@ fn solve(matrix: &mut BlockMatrix<f64>, case: &Case, stop: Stop) -> (Vec<Vector>
     preconditioner.invert(1.0, std::iter::repeat_n(0.0, nodes));
     let masses = vec![1.0; nodes];
     let Case { rhs, filters, prescribed } = case;
-    let problem = Problem { rhs, filters, prescribed, preconditioner: &preconditioner, masses: &masses };
+    let problem = Problem { rhs, filters, prescribed, masses: &masses };
     let mut solver = ConjugateGradient::new(nodes, stop.at_most());
     let mut x = vec![Vector::new(0.3, -0.2, 0.1); nodes];
-    let report = solver.solve(matrix, &problem, stop, &mut x);
+    let report = solver.solve(matrix, &mut preconditioner, &problem, stop, &mut x);
     (x, report, solver.history().to_vec())
 }
 

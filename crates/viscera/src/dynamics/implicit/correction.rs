@@ -64,11 +64,16 @@ impl<T: Scalar> Step<'_, T> {
             rhs: &memory.lack,
             filters: &memory.filters,
             prescribed: &memory.prescribed,
-            preconditioner: &memory.preconditioner,
             masses: &memory.masses,
         };
         let stop = self.settings.linear;
-        let report = memory.conjugate_gradient.solve(&mut tangent, &problem, stop, &mut memory.correction);
+        let report = memory.conjugate_gradient.solve(
+            &mut tangent,
+            &mut memory.preconditioner,
+            &problem,
+            stop,
+            &mut memory.correction,
+        );
         Solve {
             iterations: report.iterations,
             residual: report.residual,
