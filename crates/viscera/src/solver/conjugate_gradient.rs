@@ -6,7 +6,9 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
+use super::vectors::{add_scaled, dot, scale_and_add};
 use super::{Filter, LinearOperator, Preconditioner, Size};
+use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
 
 /// When the iteration ends.
@@ -75,6 +77,8 @@ pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,
     product: Vec<Vec3<T>>,
+    /// Nodes with a prescribed direction.
+    filtered: Vec<u32>,
     history: Vec<f64>,
 }
 
@@ -89,6 +93,8 @@ pub struct Problem<'a, T> {
     pub prescribed: &'a [Vec3<T>],
     /// A positive lower bound of the matrix, one number for each node: its part that comes from the masses.
     pub masses: &'a [T],
+    /// Who computes.
+    pub executor: &'a Executor,
 }
 
 impl<T: Scalar> ConjugateGradient<T> {
@@ -96,7 +102,8 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn new(nodes: usize, iterations: u32) -> Self {
         let zeros = || vec![Vec3::ZERO; nodes];
         let history = Vec::with_capacity(iterations as usize + 1);
-        Self { residual: zeros(), direction: zeros(), product: zeros(), history }
+        let filtered = Vec::with_capacity(nodes);
+        Self { residual: zeros(), direction: zeros(), product: zeros(), filtered, history }
     }
 
     /// Residuals of the last solve over their scale: at the start and after each iteration.
@@ -113,8 +120,11 @@ impl<T: Scalar> ConjugateGradient<T> {
         stop: Stop,
         x: &mut [Vec3<T>],
     ) -> SolveReport {
-        let filters = problem.filters;
+        let executor = problem.executor;
         self.history.clear();
+        self.filtered.clear();
+        let nodes = problem.filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free);
+        self.filtered.extend(nodes.map(|(node, _)| node as u32));
         let scale = self.start(matrix, preconditioner, problem, x);
         let mut size = self.precondition(matrix, preconditioner, problem, None);
         let goal = stop.relative() * scale;
@@ -128,11 +138,9 @@ impl<T: Scalar> ConjugateGradient<T> {
                 break;
             }
             matrix.apply(&self.direction, &mut self.product);
-            for (product, filter) in self.product.iter_mut().zip(filters) {
-                *product = filter.apply(*product);
-            }
+            filter(&self.filtered, problem.filters, &mut self.product);
             iterations += 1;
-            let curvature = dot(&self.direction, &self.product);
+            let curvature = dot(executor, &self.direction, &self.product);
             if curvature.is_nan() || curvature <= 0.0 {
                 if iterations == 1 {
                     self.step_against_masses(problem, size.corrected, x);
@@ -141,10 +149,8 @@ impl<T: Scalar> ConjugateGradient<T> {
                 break;
             }
             let length = T::from_f64(size.corrected / curvature);
-            for node in 0..x.len() {
-                x[node] = self.direction[node].mul_add(length, x[node]);
-                self.residual[node] = self.product[node].mul_add(-length, self.residual[node]);
-            }
+            add_scaled(executor, x, length, &self.direction);
+            add_scaled(executor, &mut self.residual, -length, &self.product);
             size = self.precondition(matrix, preconditioner, problem, Some(size));
             self.note(size.squared_norm, scale);
         }
@@ -166,12 +172,11 @@ impl<T: Scalar> ConjugateGradient<T> {
             x[node] = problem.filters[node].merge(x[node], problem.prescribed[node]);
         }
         matrix.apply(x, &mut self.product);
-        for node in 0..x.len() {
-            self.residual[node] = problem.filters[node].apply(problem.rhs[node]);
-            self.product[node] = problem.filters[node].apply(self.product[node]);
-        }
-        let of_rhs = preconditioner.squared_norm(&self.residual);
-        let of_product = preconditioner.squared_norm(&self.product);
+        self.residual.copy_from_slice(problem.rhs);
+        filter(&self.filtered, problem.filters, &mut self.residual);
+        filter(&self.filtered, problem.filters, &mut self.product);
+        let of_rhs = preconditioner.squared_norm(&self.residual, problem.executor);
+        let of_product = preconditioner.squared_norm(&self.product, problem.executor);
         for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
             *residual = *residual - product;
         }
@@ -186,13 +191,14 @@ impl<T: Scalar> ConjugateGradient<T> {
         problem: &Problem<'_, T>,
         before: Option<Size>,
     ) -> Size {
-        let size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product);
-        let weight = T::from_f64(before.map_or(0.0, |before| size.corrected / before.corrected));
-        for (direction, &corrected) in self.direction.iter_mut().zip(&self.product) {
-            *direction = match before {
-                Some(_) => direction.mul_add(weight, corrected),
-                None => corrected,
-            };
+        let size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product, problem.executor);
+        filter(&self.filtered, problem.filters, &mut self.product);
+        match before {
+            Some(before) => {
+                let weight = T::from_f64(size.corrected / before.corrected);
+                scale_and_add(problem.executor, &mut self.direction, weight, &self.product);
+            }
+            None => self.direction.copy_from_slice(&self.product),
         }
         size
     }
@@ -214,7 +220,11 @@ impl<T: Scalar> ConjugateGradient<T> {
     }
 }
 
-/// a·b over all nodes, added up in double precision in the order of the nodes.
-pub(crate) fn dot<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
-    a.iter().zip(b).map(|(&a, &b)| a.dot(b).to_f64()).sum()
+/// S v at the nodes where that is not v. Once would leave the rounding of reactions, which are larger by far than what is left
+/// of the residual; twice leaves the rounding of that.
+fn filter<T: Scalar>(nodes: &[u32], filters: &[Filter<T>], v: &mut [Vec3<T>]) {
+    for &node in nodes {
+        let (filter, value) = (&filters[node as usize], &mut v[node as usize]);
+        *value = filter.apply(filter.apply(*value));
+    }
 }

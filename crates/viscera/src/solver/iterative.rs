@@ -1,4 +1,5 @@
 use super::{BlockJacobi, ConjugateGradient, Ending, LinearSolver, Problem, SolverError, Stop, System};
+use crate::executor::Executor;
 use crate::math::Vec3;
 
 /// Conjugate gradients on the assembled matrix: what needs no factorisation, for large bodies and for programs without one.
@@ -47,7 +48,7 @@ impl LinearSolver for Iterative {
             for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
                 *block = system.matrix.block(node, node);
             }
-            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()));
+            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()), &system.filters);
         }
         Ok(())
     }
@@ -58,8 +59,13 @@ impl LinearSolver for Iterative {
         };
         let zeros = vec![Vec3::ZERO; right.len()];
         let mut solution = zeros.clone();
-        let problem =
-            Problem { rhs: right, filters: &system.filters, prescribed: &zeros, masses: &vec![0.0; zeros.len()] };
+        let problem = Problem {
+            rhs: right,
+            filters: &system.filters,
+            prescribed: &zeros,
+            masses: &vec![0.0; zeros.len()],
+            executor: &Executor::serial(),
+        };
         let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
         let report =
             conjugate_gradient.solve(&mut system.matrix.clone(), preconditioner, &problem, stop, &mut solution);

@@ -4,11 +4,14 @@ use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
 use crate::dynamics::{Drive, explicit};
+use crate::executor::Executor;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 
 /// The most sub-steps of one step.
 pub(super) const MAX_SUBSTEPS: f64 = 1e5;
+/// Cells from which on threads pay: a step of fewer is over before they have woken up.
+const WORTH_THREADS: usize = 4000;
 /// How many times a step is tried again with more sub-steps.
 const MAX_RETRIES: u32 = 5;
 
@@ -41,6 +44,24 @@ impl<T: Scalar> World<T> {
     /// # Errors
     /// [`StepError`] saying which body and cell, and what to change.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
+        self.step_on(&Executor::serial())
+    }
+
+    /// The same on the threads of `executor`. The bits of the result do not depend on how many there are; a world too small to
+    /// gain from them stays on the calling thread.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    pub fn step_on(&mut self, executor: &Executor) -> Result<StepReport, StepError> {
+        let cells: usize = self.bodies.iter().map(|body| body.mesh.cell_count()).sum();
+        let executor = if cells < WORTH_THREADS { Executor::serial() } else { executor.clone() };
+        for body in &mut self.bodies {
+            body.scratch.executor = executor.clone();
+        }
+        executor.enter(|| self.step_once())
+    }
+
+    fn step_once(&mut self) -> Result<StepReport, StepError> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
         self.keep();
         let Motion { substeps, retries, implicit } = self.move_bodies(&span).inspect_err(|_| self.undo())?;
