@@ -12,8 +12,8 @@ pub(crate) use guide::Guides;
 pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
-pub(crate) use state::MotionBackup;
 pub use state::{BodyState, NodeMotion, PastState};
+pub(crate) use state::{Driven, MotionBackup};
 
 use crate::curve::Curve;
 use crate::math::Vec3;

@@ -1,4 +1,4 @@
-use super::{Body, BodyError, BodyState, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
+use super::{Body, BodyError, BodyState, Driven, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
@@ -34,6 +34,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) frequency: Box<dyn FrequencyBound<T>>,
     pub(crate) external_forces: Vec<Vec3<T>>,
     pub(crate) scratch: Scratch<T>,
+    /// Memory of explicit steps for the nodes that are not free.
+    pub(crate) driven: Vec<Driven<T>>,
     pub(crate) backup: MotionBackup<T>,
     pub(crate) pieces: Vec<u32>,
 }
@@ -121,6 +123,7 @@ impl<T: Scalar> SimulatedBody<T> {
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
+            driven: Vec::with_capacity(mesh.nodes().len()),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),
