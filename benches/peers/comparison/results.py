@@ -1,0 +1,146 @@
+"""The tables: kept as CSV, so that some peers can be run again alone, and written for people."""
+
+import csv
+import platform
+import subprocess
+from datetime import date
+from pathlib import Path
+
+from peers import ALL, HERE
+
+RESULTS = HERE / "results"
+
+# What the programs call themselves, by the names of their folders.
+CALLED = {"rapier": "rapier3d"}
+
+BEAMS = [
+    "peer", "version", "variant", "law", "scheme", "precision", "note", "cubes", "tetrahedra", "step", "each", "speed",
+    "tip", "rest", "moves", "simulated", "load", "failure",
+]  # fmt: skip
+TORTURES = ["peer", "version", "variant", "what", "outcome"]
+
+
+def read(path):
+    if not path.exists():
+        return []
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def keep(beams, tortures, name):
+    """Puts the rows of a peer in the place of those that it had. Meshes and trials that were left out keep theirs."""
+    RESULTS.mkdir(exist_ok=True)
+    for path, columns, rows in [(RESULTS / "beam.csv", BEAMS, beams), (RESULTS / "torture.csv", TORTURES, tortures)]:
+
+        def key(row):
+            return row["peer"], row.get("variant") or "", row.get("cubes") or row.get("what") or ""
+
+        fresh = {key(row): row for row in rows}
+        gone = bool(rows) and "variant" not in rows[0]
+        old = [row for row in read(path) if key(row) not in fresh]
+        if rows:
+            # What failed to start has one row without a variant, and what starts has none such.
+            called = {CALLED.get(name, name), name}
+            old = [row for row in old if row["peer"] not in called or (bool(row.get("variant")) and not gone)]
+        order = {CALLED.get(peer, peer): number for number, peer in enumerate(ALL)}
+        everything = old + list(rows)
+        everything.sort(key=lambda row: (order.get(CALLED.get(row["peer"], row["peer"]), 99)))
+        with open(path, "w", newline="") as file:
+            writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(everything)
+
+
+def machine():
+    """The processor, by its name."""
+    try:
+        text = subprocess.run(["lscpu"], capture_output=True, text=True, check=True, env={"LC_ALL": "C"}).stdout
+        facts = dict(line.split(":", 1) for line in text.splitlines() if ":" in line)
+        name, cores = facts["Model name"].strip(), facts["CPU(s)"].strip()
+        sets = [isa for isa in ("avx2", "avx512f") if isa in facts.get("Flags", "").split()]
+        family = f"family {facts['CPU family'].strip()}, model {facts['Model'].strip()}"
+        return f"{name} ({family}), {cores} cores, {', '.join(sets) or platform.machine()}"
+    except (OSError, subprocess.CalledProcessError, KeyError):
+        return platform.processor() or platform.machine()
+
+
+def number(text):
+    return float(text) if text not in ("", None) else None
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def beam_row(row, converged):
+    names = [row["peer"], row["variant"] or "–"]
+    if row["failure"]:
+        return [*names, row["cubes"] or "–", row["failure"].replace("|", "/"), *["–"] * 8]
+    step, each, tip, rest = (number(row[key]) for key in ("step", "each", "tip", "rest"))
+    moves = number(row["moves"])
+    error = "–" if rest is None else f"{100 * (tip / rest - 1):+.1f} %"
+    if moves > 1e-3:
+        error += " (moves)" if moves == float("inf") else f" (moves {100 * moves:.1f} %)"
+    return [
+        *names,
+        row["cubes"],
+        row["scheme"],
+        row["precision"],
+        f"{1e3 * step:.3g}",
+        f"{1e3 * each:.3g}",
+        f"{1e9 * each / int(row['tetrahedra']):.0f}",
+        f"{number(row['speed']):.3g}",
+        f"{1e3 * tip:.1f}",
+        error,
+        f"{100 * (tip / converged - 1):+.0f} %" if converged else "–",
+    ]
+
+
+def write(case, equilibria):
+    """The page, from the tables as they are kept."""
+    beams, tortures = read(RESULTS / "beam.csv"), read(RESULTS / "torture.csv")
+    finest = equilibria[-1].get("nodally-integrated")
+    converged = -finest[1] if isinstance(finest, list) else None
+    head = [
+        "program", "variant", "cubes", "scheme", "", "step [ms]", "time per step [ms]", "ns per tetrahedron",
+        "simulated s per s", "tip [mm]", "against our rest, same law and mesh", "against the converged rest",
+    ]  # fmt: skip
+    versions = sorted({(row["peer"], row["version"]) for row in beams if row["version"]})
+    loads = [number(row["load"]) for row in beams if row["load"]]
+    notes = sorted({(row["peer"], row["note"]) for row in beams if row["note"]})
+    variants, trials = [], []
+    for row in tortures:
+        for value, seen in [((row["peer"], row["variant"]), variants), (row["what"], trials)]:
+            if value not in seen:
+                seen.append(value)
+    outcomes = {(row["peer"], row["variant"], row["what"]): row["outcome"] for row in tortures}
+    rests = [[law, *(f"{-1e3 * mesh[law][1]:.2f}" if isinstance(mesh[law], list) else "–" for mesh in equilibria)]
+             for law in equilibria[0]]  # fmt: skip
+    meshes = ["×".join(map(str, cells)) for cells in case["beam"]["meshes"]]
+    parts = [
+        "# The beam, side by side",
+        f"Written by `benches/peers/run` on {date.today():%d %B %Y}; one core of: {machine()}. What the columns mean, and how "
+        "steps and rests were found: [README](../README.md). Numbers: [beam.csv](beam.csv), [torture.csv](torture.csv).",
+        "Versions: " + ", ".join(f"{peer} {version}" for peer, version in versions) + ".",
+        table(head, [beam_row(row, converged) for row in beams]),
+        "\n".join(f"* {peer}: {note}." for peer, note in notes),
+    ]
+    if loads:
+        parts.append(
+            f"Load of the machine while time was taken: {min(loads):.1f} to {max(loads):.1f} processes that want a core. Times "
+            "are those on the processor, the best of several windows."
+        )
+    parts += [
+        "## Our equilibria",
+        "Deflection of the tip at rest [mm], in double precision. The converged rest is that of the nodally integrated "
+        "tetrahedra on the finest mesh.",
+        table(["law and element", *meshes], rests),
+        "## Torture",
+        f"The beam of {'×'.join(map(str, case['torture']['mesh']))} cubes at its longest step that holds, without gravity, damped.",
+        table(
+            ["program", "variant", *trials],
+            [[*who, *(outcomes.get((*who, what), "–").replace("|", "/") for what in trials)] for who in variants],
+        ),
+    ]
+    (RESULTS / "README.md").write_text("\n\n".join(part for part in parts if part) + "\n")
