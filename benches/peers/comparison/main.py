@@ -8,7 +8,7 @@ import tomllib
 import results
 from measure import Run, measure
 from peers import ALL, CASE, ENVIRONMENTS, Crash, Driver, Late, Unavailable, command, viscera
-from torture import comes_back, long_step, places, score
+from torture import broke, comes_back, long_step, places, score
 
 
 def ours(task, cells):
@@ -40,49 +40,58 @@ def nodes_of(mesh):
 
 
 def run_peer(name, case, meshes, torture):
-    """Rows of the two tables for a peer."""
-    beams, tortures = [], []
+    """Rows of the two tables for a peer, variant after variant."""
     try:
         start = command(name)
         driver = Driver(start)
         about = driver.ask("about")
     except (Unavailable, Crash, Late) as failure:
-        return [{"peer": name, "failure": f"not available: {failure}"}], []
+        yield [{"peer": name, "failure": f"not available: {failure}"}], []
+        return
     for variant in about["variants"]:
         names = {"peer": about["name"], "version": about["version"], "variant": variant["name"]}
-        rung, first = 0, None
+        beams, tortures, rung, first = [], [], 0, None
         for number, cells in enumerate(case["beam"]["meshes"][:meshes]):
             mesh = write_mesh(cells)
             print(f"{about['name']} {variant['name']} {cells}", flush=True)
             found, rung = measure(Run(driver, case, variant, mesh), number, rung)
-            if first is None:
-                first = rung
-            rest = equilibria(cells)[variant["reference"]]
-            row = names | {key: variant[key] for key in ("law", "scheme", "precision", "note")} | found
+            first = rung if first is None else first
+            row = names | {key: variant[key] for key in ("law", "scheme", "precision", "reference", "note")} | found
             row |= {"cubes": "×".join(map(str, cells)), "tetrahedra": 6 * cells[0] * cells[1] * cells[2]}
-            row["rest"] = None if "error" in rest else -rest[1]
             beams.append(row)
             print("   ", found, flush=True)
             if found.get("ended"):
                 driver.close()
                 driver = Driver(start)
         if torture:
-            mesh = write_mesh(case["torture"]["mesh"])
             step = case["step"]["longest"] / case["step"]["ratio"] ** first
-            trials = {
-                what: lambda run, positions=positions: comes_back(run, positions, step)
-                for what, positions in places(case, nodes_of(mesh)).items()
-            }
-            trials["steps of 10 ms"] = long_step
-            for what, trial in trials.items():
-                # A driver of its own, so that nothing is left from the trial before.
-                driver.close()
-                driver = Driver(start)
-                outcome = score(lambda trial=trial: trial(Run(driver, case, variant, mesh)))
-                tortures.append(names | {"what": what, "outcome": outcome})
-                print(f"    {what}: {outcome}", flush=True)
+            tortures = [names | row for row in run_torture(start, case, variant, step)]
+        yield beams, tortures
     driver.close()
-    return beams, tortures
+
+
+def run_torture(start, case, variant, step):
+    """What a variant does in each trial."""
+    mesh = write_mesh(case["torture"]["mesh"])
+
+    def outcome(trial, *arguments):
+        # A driver of its own, so that nothing is left from the trial before.
+        driver = Driver(start)
+        try:
+            return score(trial, Run(driver, case, variant, mesh), *arguments)
+        finally:
+            driver.close()
+
+    for what, positions in places(case, nodes_of(mesh)).items():
+        found = outcome(comes_back, positions, step)
+        if broke(found) and not variant.get("chooses_step"):
+            shorter = outcome(comes_back, positions, step / case["torture"]["shorter"])
+            found += f"; at steps {case['torture']['shorter']} times shorter: {shorter}"
+        print(f"    {what}: {found}", flush=True)
+        yield {"what": what, "outcome": found}
+    found = outcome(long_step)
+    print(f"    steps of 10 ms: {found}", flush=True)
+    yield {"what": "steps of 10 ms", "outcome": found}
 
 
 def main(arguments):
@@ -96,5 +105,6 @@ def main(arguments):
     ENVIRONMENTS.mkdir(exist_ok=True)
     case = tomllib.loads(CASE.read_text())
     for name in options.peers or ALL:
-        results.keep(*run_peer(name, case, options.meshes, not options.no_torture), name)
+        for beams, tortures in run_peer(name, case, options.meshes, not options.no_torture):
+            results.keep(beams, tortures, name)
     results.write(case, [equilibria(cells) for cells in case["beam"]["meshes"]])

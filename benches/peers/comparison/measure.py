@@ -13,6 +13,10 @@ class Fails(Exception):
     """The beam does not hold: how it fails."""
 
 
+class Spent(Exception):
+    """The time that was given is spent."""
+
+
 @dataclass
 class Run:
     """A variant of a peer with one mesh."""
@@ -22,49 +26,58 @@ class Run:
     variant: dict
     mesh: str
     spent: float = 0.0  # s on the processor since the beam was built
+    budget: float = math.inf  # s on the processor
+    each: float = math.inf  # s on the processor for one step, by the last answer
 
     def length(self):
         return self.case["beam"]["size"][2]
 
-    def build(self, step, gravity=None, damping=0.0):
+    def build(self, step, gravity=None, damping=0.0, budget=math.inf):
         gravity = self.case["beam"]["gravity"] if gravity is None else gravity
         answer = self.driver.ask(
             "build", mesh=self.mesh, variant=self.variant["name"], step=step, gravity=gravity, damping=damping
         )
         if "error" in answer:
             raise Fails(answer["error"])
-        self.spent = 0.0
+        self.spent, self.budget, self.each = 0.0, budget, math.inf
 
-    def advance(self, steps):
-        """Advances the beam, wherever that leads."""
+    def advance_at_once(self, steps):
+        """Advances the beam, wherever that leads, and gives the driver's answer."""
+        if self.spent > self.budget:
+            raise Spent
         answer = self.driver.ask("run", steps=steps)
         if "error" in answer:
             raise Fails(answer["error"])
         if answer["farthest"] is None:
             raise Fails("not a number")
         self.spent += answer["seconds"]
+        self.each = answer["seconds"] / steps
+        return answer
+
+    def advance(self, steps, bound=math.inf):
+        """As above, about a second on the processor at a time. No node may go farther than `bound` [m]."""
+        while steps > 0:
+            some = max(1, min(steps, int(1.0 / max(self.each, 1e-6))))
+            answer = self.advance_at_once(some)
+            if answer["farthest"] > bound:
+                raise Fails("runs away")
+            steps -= some
         return answer
 
     def swing(self, steps):
-        """Advances the beam, which has to stay within its bound."""
-        answer = self.advance(steps)
-        if answer["farthest"] > self.case["step"]["bound"] * self.length():
-            raise Fails("runs away")
-        return answer
+        """As above, for a beam that has to stay where a beam can be."""
+        return self.advance(steps, self.case["step"]["bound"] * self.length())
 
 
 def holds(run, step, seconds):
     """Whether the undamped beam, swinging from its rest shape, stays within its bound at this step."""
     try:
-        run.build(step)
-        done, chunk, total = 0, 1, math.ceil(seconds / step)
-        while done < total and run.spent < run.case["step"]["budget"]:
-            answer = run.swing(min(chunk, total - done))
-            done += chunk
-            # About a second at a time, so that a beam that ran away is not waited for.
-            chunk = max(1, min(4 * chunk, int(chunk / max(answer["seconds"], 1e-3))))
+        run.build(step, budget=run.case["step"]["budget"])
+        run.swing(math.ceil(seconds / step))
     except Fails:
         return False
+    except Spent:
+        pass
     return True
 
 
@@ -101,35 +114,36 @@ def time_per_step(run, step):
     program makes of one that it is asked for."""
     settings = run.case["time"]
     run.build(step)
-    run.swing(1)
-    answer = run.swing(2)
+    run.swing(3)
     # A window lasts no longer than half a second of the beam's time, so that all windows see it move.
-    steps = max(1, min(round(2 * settings["window"] / max(answer["seconds"], 1e-6)), round(0.5 / step)))
-    windows = [run.swing(steps) for _ in range(settings["windows"])]
+    steps = max(1, min(round(settings["window"] / max(run.each, 1e-6)), round(0.5 / step)))
+    windows = [run.advance_at_once(steps) for _ in range(settings["windows"])]
     best = min(windows, key=lambda window: window["seconds"] / window["steps"])
     return best["seconds"] / best["steps"], best["steps"] / steps
 
 
 def settled_tip(run, step):
-    """Displacement of the tip [m] when the beam has come to rest, by what share it still moves, and the time that was
+    """Deflection of the tip [m] when the beam has come to rest, by what share it still moves, and the time that was
     simulated [s].
 
     The tip is looked at every tenth of a second. It is at rest when the last second's places differ by a small share of
     their mean, which counts as its place.
     """
     settings = run.case["settle"]
-    run.build(step, damping=settings["damping"])
+    run.build(step, damping=settings["damping"], budget=settings["budget"])
     steps = max(1, round(0.1 / step))
     window = max(2, round(1.0 / (steps * step)))
     tips, simulated, moves = [], 0.0, math.inf
-    while moves > settings["quiet"] and simulated < settings["seconds"] and run.spent < settings["budget"]:
-        tips.append(run.swing(steps)["tip"])
-        simulated += steps * step
-        last = [tip[1] for tip in tips[-window:]]
-        mean = sum(last) / len(last)
-        moves = (max(last) - min(last)) / abs(mean) if len(last) == window else math.inf
+    try:
+        while moves > settings["quiet"] and simulated < settings["seconds"]:
+            tips.append(-run.swing(steps)["tip"][1])
+            simulated += steps * step
+            last = tips[-window:]
+            moves = (max(last) - min(last)) / abs(sum(last) / len(last)) if len(last) == window else math.inf
+    except Spent:
+        pass
     last = tips[-window:]
-    return [sum(tip[axis] for tip in last) / len(last) for axis in range(3)], moves, simulated
+    return sum(last) / len(last) if last else math.nan, moves, simulated
 
 
 def measure(run, number, start):
@@ -149,7 +163,7 @@ def measure(run, number, start):
                 if not free or rung > 40:
                     raise
                 rung += 1
-        found = {"step": step / made, "each": each, "speed": step / made / each, "tip": -tip[1], "load": load}
+        found = {"step": step / made, "each": each, "speed": step / made / each, "tip": tip, "load": load}
         return found | {"moves": moves, "simulated": simulated}, rung
     except Fails as failure:
         return {"failure": str(failure)}, start

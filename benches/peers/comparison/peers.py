@@ -97,6 +97,7 @@ class Driver:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            cwd=ENVIRONMENTS,  # where programs leave their logs
             env=environment,
         )
 

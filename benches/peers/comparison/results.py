@@ -1,6 +1,7 @@
 """The tables: kept as CSV, so that some peers can be run again alone, and written for people."""
 
 import csv
+import math
 import platform
 import subprocess
 from datetime import date
@@ -15,7 +16,7 @@ CALLED = {"rapier": "rapier3d"}
 
 BEAMS = [
     "peer", "version", "variant", "law", "scheme", "precision", "note", "cubes", "tetrahedra", "step", "each", "speed",
-    "tip", "rest", "moves", "simulated", "load", "failure",
+    "tip", "reference", "rest", "moves", "simulated", "load", "failure",
 ]  # fmt: skip
 TORTURES = ["peer", "version", "variant", "what", "outcome"]
 
@@ -27,8 +28,15 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def save(path, columns, rows):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def keep(beams, tortures, name):
-    """Puts the rows of a peer in the place of those that it had. Meshes and trials that were left out keep theirs."""
+    """Puts rows of a peer in the place of those that it had. Variants, meshes and trials that were left out keep theirs."""
     RESULTS.mkdir(exist_ok=True)
     for path, columns, rows in [(RESULTS / "beam.csv", BEAMS, beams), (RESULTS / "torture.csv", TORTURES, tortures)]:
 
@@ -44,11 +52,8 @@ def keep(beams, tortures, name):
             old = [row for row in old if row["peer"] not in called or (bool(row.get("variant")) and not gone)]
         order = {CALLED.get(peer, peer): number for number, peer in enumerate(ALL)}
         everything = old + list(rows)
-        everything.sort(key=lambda row: (order.get(CALLED.get(row["peer"], row["peer"]), 99)))
-        with open(path, "w", newline="") as file:
-            writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(everything)
+        everything.sort(key=lambda row: (order[CALLED.get(row["peer"], row["peer"])], *map(str, key(row)[:2]), int(row.get("tetrahedra") or 0)))
+        save(path, columns, everything)
 
 
 def machine():
@@ -73,15 +78,18 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def beam_row(row, converged):
+def beam_row(row, converged, quiet):
     names = [row["peer"], row["variant"] or "–"]
     if row["failure"]:
         return [*names, row["cubes"] or "–", row["failure"].replace("|", "/"), *["–"] * 8]
     step, each, tip, rest = (number(row[key]) for key in ("step", "each", "tip", "rest"))
     moves = number(row["moves"])
+    if math.isnan(tip):
+        tip = rest = None
     error = "–" if rest is None else f"{100 * (tip / rest - 1):+.1f} %"
-    if moves > 1e-3:
-        error += " (moves)" if moves == float("inf") else f" (moves {100 * moves:.1f} %)"
+    if tip is not None and moves > quiet:
+        after = f" after {number(row['simulated']):.1f} s"
+        error += f" (moves{after})" if math.isinf(moves) else f" (moves {100 * moves:.1f} %{after})"
     return [
         *names,
         row["cubes"],
@@ -91,15 +99,21 @@ def beam_row(row, converged):
         f"{1e3 * each:.3g}",
         f"{1e9 * each / int(row['tetrahedra']):.0f}",
         f"{number(row['speed']):.3g}",
-        f"{1e3 * tip:.1f}",
+        f"{1e3 * tip:.1f}" if tip else "–",
         error,
-        f"{100 * (tip / converged - 1):+.0f} %" if converged else "–",
+        f"{100 * (tip / converged - 1):+.0f} %" if tip and converged else "–",
     ]
 
 
 def write(case, equilibria):
     """The page, from the tables as they are kept."""
     beams, tortures = read(RESULTS / "beam.csv"), read(RESULTS / "torture.csv")
+    names = ["×".join(map(str, cells)) for cells in case["beam"]["meshes"]]
+    for row in beams:
+        if row["reference"]:
+            rest = equilibria[names.index(row["cubes"])][row["reference"]]
+            row["rest"] = -rest[1] if isinstance(rest, list) else ""
+    save(RESULTS / "beam.csv", BEAMS, beams)
     finest = equilibria[-1].get("nodally-integrated")
     converged = -finest[1] if isinstance(finest, list) else None
     head = [
@@ -117,13 +131,12 @@ def write(case, equilibria):
     outcomes = {(row["peer"], row["variant"], row["what"]): row["outcome"] for row in tortures}
     rests = [[law, *(f"{-1e3 * mesh[law][1]:.2f}" if isinstance(mesh[law], list) else "–" for mesh in equilibria)]
              for law in equilibria[0]]  # fmt: skip
-    meshes = ["×".join(map(str, cells)) for cells in case["beam"]["meshes"]]
     parts = [
         "# The beam, side by side",
         f"Written by `benches/peers/run` on {date.today():%d %B %Y}; one core of: {machine()}. What the columns mean, and how "
         "steps and rests were found: [README](../README.md). Numbers: [beam.csv](beam.csv), [torture.csv](torture.csv).",
         "Versions: " + ", ".join(f"{peer} {version}" for peer, version in versions) + ".",
-        table(head, [beam_row(row, converged) for row in beams]),
+        table(head, [beam_row(row, converged, case["settle"]["quiet"]) for row in beams]),
         "\n".join(f"* {peer}: {note}." for peer, note in notes),
     ]
     if loads:
@@ -135,7 +148,7 @@ def write(case, equilibria):
         "## Our equilibria",
         "Deflection of the tip at rest [mm], in double precision. The converged rest is that of the nodally integrated "
         "tetrahedra on the finest mesh.",
-        table(["law and element", *meshes], rests),
+        table(["law and element", *names], rests),
         "## Torture",
         f"The beam of {'×'.join(map(str, case['torture']['mesh']))} cubes at its longest step that holds, without gravity, damped.",
         table(

@@ -3,7 +3,7 @@
 import math
 import random
 
-from measure import Fails
+from measure import Fails, Spent
 from peers import Crash, Late
 
 
@@ -30,10 +30,10 @@ def places(case, nodes):
     return done
 
 
-def score(trial):
+def score(trial, *arguments):
     """What a trial comes to, in few words."""
     try:
-        return trial()
+        return trial(*arguments)
     except Fails as failure:
         return "NaN" if str(failure) == "not a number" else str(failure)
     except Late:
@@ -45,24 +45,32 @@ def score(trial):
 def comes_back(run, positions, step):
     """What becomes of the beam, put there, without gravity."""
     settings = run.case["torture"]
-    run.build(step, gravity=[0.0, 0.0, 0.0], damping=settings["damping"])
+    run.build(step, gravity=[0.0, 0.0, 0.0], damping=settings["damping"], budget=settings["budget"])
     answer = run.driver.ask("place", positions=positions)
     if "error" in answer:
         raise Fails(answer["error"])
     steps, simulated, farthest = max(1, round(0.1 / step)), 0.0, math.inf
-    while simulated < settings["seconds"]:
-        if run.spent > settings["budget"]:
-            return f"wrong after {simulated:.1f} s, too slow to go on"
-        farthest = run.advance(steps)["farthest"]
-        simulated += steps * step
-        if farthest <= settings["back"] * run.length():
-            return f"comes back in {simulated:.1f} s"
+    try:
+        while simulated < settings["seconds"]:
+            farthest = run.advance(steps)["farthest"]
+            simulated += steps * step
+            if farthest <= settings["back"] * run.length():
+                return f"comes back in {simulated:.1f} s"
+    except Spent:
+        return f"wrong after {simulated:.1f} s, too slow to go on"
     return "stays wrong" if farthest <= 10.0 * run.length() else "flies apart"
+
+
+def broke(outcome):
+    """Whether that may be the fault of the step."""
+    return outcome.startswith(("NaN", "flies apart", "runs away"))
 
 
 def long_step(run):
     """What becomes of the swinging beam at steps of 10 ms."""
-    run.build(0.01)
-    for _ in range(math.ceil(run.case["step"]["seconds"][0] / 0.1)):
-        run.swing(10)
+    run.build(0.01, budget=run.case["torture"]["budget"])
+    try:
+        run.swing(math.ceil(run.case["step"]["seconds"][0] / 0.01))
+    except Spent:
+        return "holds while it was watched"
     return "holds"

@@ -122,7 +122,8 @@ impl Session<'_> {
         let seconds = begin.elapsed().as_secs_f64();
         let positions = simulation.positions();
         let tip = mesh.tip(self.case);
-        let displacement = |node: usize| -> [f64; 3] { std::array::from_fn(|axis| positions[node][axis] - mesh.nodes[node][axis]) };
+        let displacement =
+            |node: usize| -> [f64; 3] { std::array::from_fn(|axis| positions[node][axis] - mesh.nodes[node][axis]) };
         let distance = |node: usize| displacement(node).iter().map(|d| d * d).sum::<f64>().sqrt();
         // Not a number in JSON is null, and has to win over every number.
         let farthest = (0..positions.len()).map(distance).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });

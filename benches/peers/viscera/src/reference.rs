@@ -27,8 +27,13 @@ pub enum Reference {
 
 impl Reference {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::StVenantKirchhoff, Self::StableNeoHookean, Self::NeoHookean, Self::Corotational, Self::NodallyIntegrated];
+    pub const ALL: [Self; 5] = [
+        Self::StVenantKirchhoff,
+        Self::StableNeoHookean,
+        Self::NeoHookean,
+        Self::Corotational,
+        Self::NodallyIntegrated,
+    ];
 
     /// As drivers call it.
     pub fn name(self) -> &'static str {

@@ -57,8 +57,7 @@ impl Variant {
             Self::Corotational => ("corotational", ""),
         };
         let implicit = self == Self::Corotational;
-        let scheme =
-            if implicit { format!("implicit, {ITERATIONS} iterations of CG") } else { "explicit".to_owned() };
+        let scheme = if implicit { format!("implicit, {ITERATIONS} iterations of CG") } else { "explicit".to_owned() };
         json!({
             "name": self.name(),
             "law": law,
