@@ -28,6 +28,12 @@ def read(path):
         return list(csv.DictReader(file))
 
 
+def place(row):
+    """Where a row stands in a table."""
+    order = [CALLED.get(peer, peer) for peer in ALL]
+    return order.index(CALLED.get(row["peer"], row["peer"])), row.get("variant") or "", int(row.get("tetrahedra") or 0)
+
+
 def save(path, columns, rows):
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
@@ -50,9 +56,8 @@ def keep(beams, tortures, name):
             # What failed to start has one row without a variant, and what starts has none such.
             called = {CALLED.get(name, name), name}
             old = [row for row in old if row["peer"] not in called or (bool(row.get("variant")) and not gone)]
-        order = {CALLED.get(peer, peer): number for number, peer in enumerate(ALL)}
         everything = old + list(rows)
-        everything.sort(key=lambda row: (order[CALLED.get(row["peer"], row["peer"])], *map(str, key(row)[:2]), int(row.get("tetrahedra") or 0)))
+        everything.sort(key=place)
         save(path, columns, everything)
 
 
@@ -105,6 +110,19 @@ def beam_row(row, converged, quiet):
     ]
 
 
+def missing(beams, names):
+    """Rows that say which meshes a variant was not run on."""
+    seen = dict.fromkeys((row["peer"], row["variant"]) for row in beams if row["variant"])
+    for peer, variant in seen:
+        run = {row["cubes"] for row in beams if (row["peer"], row["variant"]) == (peer, variant)}
+        for cubes in names:
+            if cubes not in run:
+                yield dict.fromkeys(BEAMS, "") | {
+                    "peer": peer, "variant": variant, "cubes": cubes, "failure": "not run",
+                    "tetrahedra": 6 * math.prod(map(int, cubes.split("×"))),
+                }  # fmt: skip
+
+
 def write(case, equilibria):
     """The page, from the tables as they are kept."""
     beams, tortures = read(RESULTS / "beam.csv"), read(RESULTS / "torture.csv")
@@ -114,6 +132,7 @@ def write(case, equilibria):
             rest = equilibria[names.index(row["cubes"])][row["reference"]]
             row["rest"] = -rest[1] if isinstance(rest, list) else ""
     save(RESULTS / "beam.csv", BEAMS, beams)
+    shown = sorted(beams + list(missing(beams, names)), key=place)
     finest = equilibria[-1].get("nodally-integrated")
     converged = -finest[1] if isinstance(finest, list) else None
     head = [
@@ -136,7 +155,7 @@ def write(case, equilibria):
         f"Written by `benches/peers/run` on {date.today():%d %B %Y}; one core of: {machine()}. What the columns mean, and how "
         "steps and rests were found: [README](../README.md). Numbers: [beam.csv](beam.csv), [torture.csv](torture.csv).",
         "Versions: " + ", ".join(f"{peer} {version}" for peer, version in versions) + ".",
-        table(head, [beam_row(row, converged, case["settle"]["quiet"]) for row in beams]),
+        table(head, [beam_row(row, converged, case["settle"]["quiet"]) for row in shown]),
         "\n".join(f"* {peer}: {note}." for peer, note in notes),
     ]
     if loads:
