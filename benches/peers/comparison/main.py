@@ -48,6 +48,7 @@ def run_peer(name, case, meshes, torture):
     except (Unavailable, Crash, Late) as failure:
         yield [{"peer": name, "failure": f"not available: {failure}"}], []
         return
+    yield list(results.announce(about, case["beam"]["meshes"])), []
     for variant in about["variants"]:
         names = {"peer": about["name"], "version": about["version"], "variant": variant["name"]}
         beams, tortures, rung, first = [], [], 0, None

@@ -14,6 +14,9 @@ RESULTS = HERE / "results"
 # What the programs call themselves, by the names of their folders.
 CALLED = {"rapier": "rapier3d"}
 
+# What the converged rest is taken from.
+FINEST = "nodally-integrated"
+
 BEAMS = [
     "peer", "version", "variant", "law", "scheme", "precision", "note", "cubes", "tetrahedra", "step", "each", "speed",
     "tip", "reference", "rest", "moves", "simulated", "load", "failure",
@@ -110,16 +113,16 @@ def beam_row(row, converged, quiet):
     ]
 
 
-def missing(beams, names):
-    """Rows that say which meshes a variant was not run on."""
-    seen = dict.fromkeys((row["peer"], row["variant"]) for row in beams if row["variant"])
-    for peer, variant in seen:
-        run = {row["cubes"] for row in beams if (row["peer"], row["variant"]) == (peer, variant)}
-        for cubes in names:
-            if cubes not in run:
-                yield dict.fromkeys(BEAMS, "") | {
-                    "peer": peer, "variant": variant, "cubes": cubes, "failure": "not run",
-                    "tetrahedra": 6 * math.prod(map(int, cubes.split("×"))),
+def announce(about, meshes):
+    """Rows for all that a peer can run and was not run on yet, so that nothing is left out unseen."""
+    known = {(row["peer"], row["variant"], row["cubes"]) for row in read(RESULTS / "beam.csv")}
+    for variant in about["variants"]:
+        for cells in meshes:
+            cubes = "×".join(map(str, cells))
+            if (about["name"], variant["name"], cubes) not in known:
+                yield {
+                    "peer": about["name"], "version": about["version"], "variant": variant["name"], "cubes": cubes,
+                    "tetrahedra": 6 * math.prod(cells), "failure": "not run",
                 }  # fmt: skip
 
 
@@ -132,9 +135,10 @@ def write(case, equilibria):
             rest = equilibria[names.index(row["cubes"])][row["reference"]]
             row["rest"] = -rest[1] if isinstance(rest, list) else ""
     save(RESULTS / "beam.csv", BEAMS, beams)
-    shown = sorted(beams + list(missing(beams, names)), key=place)
-    finest = equilibria[-1].get("nodally-integrated")
-    converged = -finest[1] if isinstance(finest, list) else None
+    absent = [CALLED.get(peer, peer) for peer in ALL if not {peer, CALLED.get(peer)} & {row["peer"] for row in beams}]
+    shown = sorted(beams + [dict.fromkeys(BEAMS, "") | {"peer": peer, "failure": "not run"} for peer in absent], key=place)
+    known = [(name, -mesh[FINEST][1]) for name, mesh in zip(names, equilibria) if isinstance(mesh[FINEST], list)]
+    finest, converged = known[-1] if known else ("–", None)
     head = [
         "program", "variant", "cubes", "scheme", "", "step [ms]", "time per step [ms]", "ns per tetrahedron",
         "simulated s per s", "tip [mm]", "against our rest, same law and mesh", "against the converged rest",
@@ -165,8 +169,7 @@ def write(case, equilibria):
         )
     parts += [
         "## Our equilibria",
-        "Deflection of the tip at rest [mm], in double precision. The converged rest is that of the nodally integrated "
-        "tetrahedra on the finest mesh.",
+        f"Deflection of the tip at rest [mm], in double precision. The converged rest is that of {FINEST} on {finest}.",
         table(["law and element", *names], rests),
         "## Torture",
         f"The beam of {'×'.join(map(str, case['torture']['mesh']))} cubes at its longest step that holds, without gravity, damped.",

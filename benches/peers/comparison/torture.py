@@ -35,7 +35,11 @@ def score(trial, *arguments):
     try:
         return trial(*arguments)
     except Fails as failure:
-        return "NaN" if str(failure) == "not a number" else str(failure)
+        what = str(failure)
+        if what in ("not a number", "runs away"):
+            return {"not a number": "NaN"}.get(what, what)
+        # The first part of a message says what, the rest where and why.
+        return f"refuses: {what.split(':')[0]}"
     except Late:
         return "no answer"
     except Crash as crash:
