@@ -19,7 +19,7 @@ fn scaled<R: Real>(f: &Mat3<R>) -> (Mat3<R>, R) {
     let largest = |v: Vec3<R>| v.x.abs().max(v.y.abs()).max(v.z.abs());
     let [a, b, c] = f.columns;
     let scale = largest(a).max(largest(b)).max(largest(c)).max(a.x.like(1e-30));
-    (Mat3::from_columns(a / scale, b / scale, c / scale), scale)
+    (*f * (scale.like(1.0) / scale), scale)
 }
 
 /// a/|a|, or `instead` where |a|² is not above `least`.
