@@ -5,8 +5,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The engine's modules, from the ground up: each uses those before it and, of its own, any part.
-const ORDER: &[&str] =
-    &["math", "curve", "mesh", "material", "model", "solver", "body", "dynamics", "cutting", "instrument", "world"];
+const ORDER: &[&str] = &[
+    "math",
+    "curve",
+    "stage",
+    "mesh",
+    "material",
+    "model",
+    "solver",
+    "body",
+    "dynamics",
+    "cutting",
+    "instrument",
+    "world",
+];
 
 /// Ways of the standard library out of the engine: files, sockets, clocks, processes, threads.
 const OUTSIDE: &[&str] = &["std::fs", "std::net", "std::time", "std::process", "std::env", "std::thread", "std::io"];

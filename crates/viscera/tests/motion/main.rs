@@ -17,4 +17,6 @@ mod support;
 mod world_invariance;
 mod world_refusal;
 mod world_snapshot;
+mod world_snapshot_bytes;
 mod world_stable_step;
+mod world_stages;

@@ -6,6 +6,7 @@ use super::tangent::Tangent;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 use crate::solver::{BlockJacobi, BlockMatrix, Ending, Problem};
+use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
 const ROUNDINGS: f64 = 8.0;
@@ -25,9 +26,11 @@ impl<T: Scalar> Step<'_, T> {
     /// Prepares the models for products at the positions, once for all of them.
     pub(super) fn linearize(&mut self) {
         if !std::mem::replace(&mut self.is_linearized, true) {
-            for model in &self.body.state.models {
-                model.linearize(&self.body.state.positions, &mut self.body.scratch);
-            }
+            self.stages.run(Stage::Linearisation, || {
+                for model in &self.body.state.models {
+                    model.linearize(&self.body.state.positions, &mut self.body.scratch);
+                }
+            });
         }
     }
 
@@ -42,16 +45,19 @@ impl<T: Scalar> Step<'_, T> {
         for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
             *mass = nodal * mass_factor;
         }
-        memory.preconditioner.clear();
-        if let Some(matrix) = &mut memory.matrix {
-            matrix.clear();
-        }
-        let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix: memory.matrix.as_mut() };
-        for model in &state.models {
-            model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
-        }
-        let rounding = rounding(memory, &state.positions);
-        memory.preconditioner.invert(stiffness, memory.masses.iter().copied());
+        let rounding = self.stages.run(Stage::Preconditioner, || {
+            memory.preconditioner.clear();
+            if let Some(matrix) = &mut memory.matrix {
+                matrix.clear();
+            }
+            let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix: memory.matrix.as_mut() };
+            for model in &state.models {
+                model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+            }
+            let rounding = rounding(memory, &state.positions);
+            memory.preconditioner.invert(stiffness, memory.masses.iter().copied());
+            rounding
+        });
         let mut tangent = Tangent {
             models: &state.models,
             positions: &state.positions,
@@ -59,6 +65,7 @@ impl<T: Scalar> Step<'_, T> {
             assembled: memory.matrix.as_mut(),
             masses: &memory.masses,
             stiffness,
+            stages: self.stages,
         };
         let problem = Problem {
             rhs: &memory.lack,
@@ -68,7 +75,9 @@ impl<T: Scalar> Step<'_, T> {
             masses: &memory.masses,
         };
         let stop = self.settings.linear;
-        let report = memory.conjugate_gradient.solve(&mut tangent, &problem, stop, &mut memory.correction);
+        let report = self.stages.run(Stage::LinearSolve, || {
+            memory.conjugate_gradient.solve(&mut tangent, &problem, stop, &mut memory.correction)
+        });
         Solve {
             iterations: report.iterations,
             residual: report.residual,
