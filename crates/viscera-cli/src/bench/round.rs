@@ -85,7 +85,9 @@ mod tests {
         // What is made once, as the memory of threads, is made in the first round.
         rounds.play(|| false).expect("every step can be made");
         for round in 0..2 {
-            let used = measure(|| drop(rounds.play(|| false).expect("every step can be made, to the same bits")));
+            let used = measure(|| {
+                rounds.play(|| false).expect("every step can be made, to the same bits");
+            });
             assert!(used.count_total > 0, "surfaces and snapshots ask for memory");
             assert_eq!(used.bytes_current, 0, "round {round}");
             assert_eq!(used.count_current, 0, "round {round}");

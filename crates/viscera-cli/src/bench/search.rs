@@ -76,7 +76,7 @@ mod tests {
             let time = each * cells * if cells > 3e5 { 2.0 } else { 1.0 };
             Ok(Measured { cells: cells as usize, nodes: 0, edge: 0.0, time, substeps: 1.0 })
         });
-        (found.ok().expect("nothing fails"), trials)
+        (found.expect("nothing fails"), trials)
     }
 
     #[test]

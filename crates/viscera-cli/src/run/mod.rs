@@ -9,7 +9,7 @@ mod moment;
 mod observables;
 mod progress;
 pub(crate) mod recording;
-mod summary;
+pub(crate) mod summary;
 mod tables;
 mod tally;
 

@@ -11,7 +11,7 @@ use super::folder::Folder;
 
 /// What a run came to. Every name carries its unit.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Summary {
+pub(crate) struct Summary {
     pub(super) program: String,
     pub(super) scene: String,
     pub(super) title: Option<String>,
