@@ -7,7 +7,7 @@ use std::time::Instant;
 use viscera_io::grouped;
 
 use super::arguments::CapacityArguments;
-use super::organ::{Care, Measured, Pace};
+use super::organ::{Care, Measured, Pace, Sizing};
 use super::search::{Found, largest};
 use crate::failure::Failure;
 use crate::instruction_set::instruction_set;
@@ -36,8 +36,9 @@ pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
         "ms per step",
         "ns per tetrahedron",
     ]);
+    let mut sizing = Sizing::default();
     for pace in Pace::ALL {
-        let found = largest(pace.step(), tolerance, |cells| pace.measure(cells, care))?;
+        let found = largest(pace.step(), tolerance, |cells| pace.measure(cells, care, &mut sizing))?;
         table.add_row(row(pace, found));
     }
     let settings: Vec<_> = Pace::ALL.iter().map(|pace| pace.settings()).collect();

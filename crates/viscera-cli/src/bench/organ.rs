@@ -57,6 +57,20 @@ pub(super) struct Care {
     pub(super) window: f64,
 }
 
+/// Which edge makes how many cells: they go with its inverse cube, by a factor that every mesh tells anew.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizing {
+    /// Cells times the cube of the edge [m³].
+    volume: f64,
+}
+
+impl Default for Sizing {
+    /// As of a liver of 30 cm in 10 000 cells of 15 mm.
+    fn default() -> Self {
+        Self { volume: 1e4 * 0.015_f64.powi(3) }
+    }
+}
+
 impl Pace {
     pub(super) const ALL: [Self; 2] = [Self::Explicit, Self::Implicit];
 
@@ -111,11 +125,11 @@ impl Pace {
     }
 
     /// Measures an organ of about so many cells.
-    pub(super) fn measure(self, cells: f64, care: Care) -> Result<Measured, Failure> {
-        // A liver of 30 cm in cells of this edge has about 10 000 of them; the rest goes with the cube.
-        let edge = 14.7e-3 * (1e4 / cells).cbrt();
+    pub(super) fn measure(self, cells: f64, care: Care, sizing: &mut Sizing) -> Result<Measured, Failure> {
+        let edge = (sizing.volume / cells).cbrt();
         let mesh = TetMesh::liver(LENGTH, edge).map_err(Failure::problem)?;
         let (cells, nodes) = (mesh.cells.len(), mesh.nodes.len());
+        sizing.volume = cells as f64 * edge.powi(3);
         let mut world = self.world(mesh)?;
         let mut substeps = 0;
         let mut step = |world: &mut World<f32>| {
