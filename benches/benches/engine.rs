@@ -11,6 +11,7 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode};
 use viscera::body::Body;
 use viscera::dynamics::implicit::{Implicit, MatrixForm};
+use viscera::executor::Executor;
 use viscera::material::{
     Lame, LinearElastic, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
 };
@@ -22,11 +23,13 @@ use viscera::model::{
 };
 use viscera::solver::Stop;
 use viscera::world::{Integrator, World, WorldConfig};
-use viscera_benches::{Machine, instruction_set};
+use viscera_benches::{Machine, Results, instruction_set};
 
 /// Cells of the beam of 0.1×0.1×0.4 m along its axes: 1536, 12 288 and 98 304 tetrahedra.
 const SIZES: [[usize; 3]; 3] = [[4, 4, 16], [8, 8, 32], [16, 16, 64]];
 const BEAM: [f64; 3] = [0.1, 0.1, 0.4]; // m
+/// A million tetrahedra, for what grows with the mesh.
+const LARGE: [usize; 3] = [32, 32, 163];
 
 /// Iterations of the conjugate gradient in an implicit step.
 const ITERATIONS: u32 = 25;
@@ -46,6 +49,7 @@ struct Suite<'a> {
     machine: Machine,
     group: RefCell<BenchmarkGroup<'a, WallTime>>,
     lines: RefCell<Vec<String>>,
+    results: RefCell<Results>,
 }
 
 impl Suite<'_> {
@@ -82,8 +86,10 @@ impl Suite<'_> {
             }
             Yardstick::None => String::new(),
         };
+        self.results.borrow_mut().add(id.clone(), seconds / elements as f64, share.clone());
         let each = seconds * 1e9 / elements as f64;
-        let line = format!("{id:<58} {each:8.2} ns/element   {share:<38} 1 thread   {}", instruction_set());
+        let threads = if id.contains("/threads-2/") { "2 threads" } else { "1 thread " };
+        let line = format!("{id:<58} {each:8.2} ns/element   {share:<38} {threads}   {}", instruction_set());
         self.lines.borrow_mut().push(line);
     }
 
@@ -99,14 +105,22 @@ impl Suite<'_> {
     }
 
     /// One sub-step of a beam that swings under gravity, all that belongs to it: forces, loads, motion, guard.
-    fn substep<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>) {
+    fn substep<T: Precision>(
+        &self,
+        name: &str,
+        mesh: &VolumeMesh,
+        recipe: Box<dyn ModelRecipe>,
+        flops: Option<f64>,
+        executor: &Executor,
+    ) {
         let mut world = World::<T>::new(WorldConfig { step: 2e-3, ..WorldConfig::default() }).unwrap();
         let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
         world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe).fix(held)).unwrap();
         let snapshot = world.snapshot();
-        self.measure::<T>(&format!("substep/{name}"), mesh.cell_count(), Yardstick::None, || {
+        let yardstick = flops.map_or(Yardstick::None, Yardstick::Flops);
+        self.measure::<T>(&on(executor, "substep", name), mesh.cell_count(), yardstick, || {
             let begin = Instant::now();
-            let substeps = world.step().unwrap().substeps;
+            let substeps = world.step_on(executor).unwrap().substeps;
             let elapsed = begin.elapsed();
             if world.time() > 0.05 {
                 world.restore(&snapshot).unwrap();
@@ -137,6 +151,7 @@ impl Suite<'_> {
         mesh: &VolumeMesh,
         recipe: impl ModelRecipe + 'static,
         matrix: MatrixForm,
+        executor: &Executor,
     ) {
         let settings = Implicit { linear: Stop::Iterations(ITERATIONS), matrix, ..Implicit::default() };
         let integrator = Integrator::Implicit(settings);
@@ -144,9 +159,9 @@ impl Suite<'_> {
         let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
         world.add(Body::new(mesh.clone(), 1000.0).model(recipe).fix(held)).unwrap();
         let snapshot = world.snapshot();
-        self.measure::<T>(&format!("implicit/{name}"), mesh.cell_count(), Yardstick::None, || {
+        self.measure::<T>(&on(executor, "implicit", name), mesh.cell_count(), Yardstick::None, || {
             let begin = Instant::now();
-            world.step().unwrap();
+            world.step_on(executor).unwrap();
             let elapsed = begin.elapsed();
             if world.time() > 0.1 {
                 world.restore(&snapshot).unwrap();
@@ -163,9 +178,11 @@ impl Suite<'_> {
         hexahedra: &VolumeMesh,
         recipe: impl ModelRecipe + Clone + 'static,
     ) {
-        self.implicit::<T>(name, tetrahedra, recipe.clone(), MatrixForm::Free);
-        self.implicit::<T>(&format!("{name}/assembled"), tetrahedra, recipe.clone(), MatrixForm::Assembled);
-        self.implicit::<T>(&format!("{name}/hexahedra"), hexahedra, recipe, MatrixForm::Free);
+        let (one, two) = (Executor::serial(), Executor::threads(2).unwrap());
+        self.implicit::<T>(name, tetrahedra, recipe.clone(), MatrixForm::Free, &one);
+        self.implicit::<T>(name, tetrahedra, recipe.clone(), MatrixForm::Free, &two);
+        self.implicit::<T>(&format!("{name}/assembled"), tetrahedra, recipe.clone(), MatrixForm::Assembled, &one);
+        self.implicit::<T>(&format!("{name}/hexahedra"), hexahedra, recipe, MatrixForm::Free, &one);
     }
 
     /// Removes every 97th tetrahedron; the time per removed one.
@@ -179,6 +196,11 @@ impl Suite<'_> {
             begin.elapsed()
         });
     }
+}
+
+/// What is measured, and whether on two threads.
+fn on(executor: &Executor, what: &str, name: &str) -> String {
+    if executor.thread_count() == 1 { format!("{what}/{name}") } else { format!("{what}/{name}/threads-2") }
 }
 
 /// A smooth deformation in which every term of every law counts.
@@ -195,6 +217,16 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
     let stable = || Tissue::uniform(StableNeoHookean::new(lame));
     let fibred = || Tissue::uniform(TransverseStVenantKirchhoff::new(lame, [0.0, 0.0, 1.0], longitudinal).unwrap());
 
+    let (one, two) = (Executor::serial(), Executor::threads(2).unwrap());
+    let large = VolumeMesh::from(TetMesh::box_grid(LARGE, BEAM));
+    suite.substep::<T>(
+        "total-lagrangian/st-venant-kirchhoff",
+        &large,
+        Box::new(TotalLagrangian::new(stvk())),
+        Some(200.0),
+        &one,
+    );
+    drop(large);
     for cells in SIZES {
         let tetrahedra = TetMesh::box_grid(cells, BEAM);
         let mesh = VolumeMesh::from(tetrahedra.clone());
@@ -218,8 +250,10 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
             let model = T::build_model(recipe.as_ref(), &mesh).unwrap();
             suite.forces(name, model.as_ref(), &mesh, flops);
             suite.removal(name, model.as_ref(), &mesh);
-            suite.substep::<T>(name, &mesh, recipe);
+            suite.substep::<T>(name, &mesh, recipe, flops, &one);
         }
+        let direct = Box::new(TotalLagrangian::new(stvk()));
+        suite.substep::<T>("total-lagrangian/st-venant-kirchhoff", &mesh, direct, Some(200.0), &two);
         let penalty = VolumePenalty::<T>::new(&tetrahedra, 1e4).unwrap();
         suite.forces("volume-penalty", &penalty, &mesh, None);
         suite.removal("volume-penalty", &penalty, &mesh);
@@ -253,7 +287,7 @@ fn main() {
         .configure_from_args();
     let mut group = criterion.benchmark_group("engine");
     group.sampling_mode(SamplingMode::Flat);
-    let benches = Suite { machine, group: RefCell::new(group), lines: RefCell::default() };
+    let benches = Suite { machine, group: RefCell::new(group), lines: RefCell::default(), results: RefCell::default() };
     suite::<f32>(&benches);
     suite::<f64>(&benches);
     benches.group.into_inner().finish();
@@ -266,6 +300,10 @@ fn main() {
         machine.bandwidth / 1e9
     );
     for line in benches.lines.into_inner() {
+        println!("{line}");
+    }
+    println!("\nwhat is asked for, and what was measured");
+    for line in benches.results.into_inner().bars() {
         println!("{line}");
     }
 }

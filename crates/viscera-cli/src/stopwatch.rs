@@ -1,7 +1,7 @@
 //! Where the time of a run goes.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use viscera::stage::{Stage, StageObserver};
@@ -24,7 +24,7 @@ pub(crate) enum Cost {
 /// Own times of costs that may lie within one another: what lies within a cost is not counted for it again.
 #[derive(Debug, Default)]
 pub(crate) struct Stopwatch {
-    running: RefCell<Running>,
+    running: Mutex<Running>,
 }
 
 #[derive(Debug, Default)]
@@ -53,18 +53,23 @@ impl Stopwatch {
 
     /// What was spent so far, by cost.
     pub(crate) fn spent(&self) -> BTreeMap<Cost, Spent> {
-        self.running.borrow().spent.clone()
+        self.running().spent.clone()
+    }
+
+    /// Work that panicked leaves numbers behind, and those are whole.
+    fn running(&self) -> MutexGuard<'_, Running> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn begin(&self, cost: Cost) {
-        let mut running = self.running.borrow_mut();
+        let mut running = self.running();
         running.settle();
         running.open.push(cost);
         running.spent.entry(cost).or_default().times += 1;
     }
 
     fn end(&self) {
-        let mut running = self.running.borrow_mut();
+        let mut running = self.running();
         running.settle();
         running.open.pop();
     }

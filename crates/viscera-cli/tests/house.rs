@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 /// The engine's modules, from the ground up: each uses those before it and, of its own, any part.
 const ORDER: &[&str] = &[
     "math",
+    "executor",
     "curve",
     "stage",
     "mesh",

@@ -2,12 +2,14 @@
 //!
 //! Viscera unites two lines of work, the non-linear anisotropic tensor-mass models for surgery (Picinbono, Delingette,
 //! Ayache 2000/2001) and the physically realistic interactive models (Nesme et al. 2005). All quantities are SI
-//! (m, kg, s, N, Pa) unless an item says otherwise. The crate touches no file, socket, clock or global thread.
+//! (m, kg, s, N, Pa) unless an item says otherwise. The crate touches no file, socket or clock, and no thread
+//! but those of the executor that a step is given.
 
 pub mod body;
 pub mod curve;
 mod cutting;
 pub mod dynamics;
+pub mod executor;
 pub mod instrument;
 pub mod material;
 pub mod math;

@@ -31,8 +31,8 @@ pub enum Stage {
 
 /// Someone who wants to know when stages begin and end: with a clock, a profile.
 ///
-/// Calls come from the thread that steps, in pairs, properly nested.
-pub trait StageObserver {
+/// Calls come one after another, in pairs, properly nested; from the thread that steps, or one of the executor's.
+pub trait StageObserver: Sync {
     /// The stage begins.
     fn enter(&self, stage: Stage);
     /// The stage that was entered last ends.

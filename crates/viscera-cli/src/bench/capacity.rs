@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::thread::available_parallelism;
 use std::time::Instant;
 
+use viscera::executor::Executor;
 use viscera_io::grouped;
 
 use super::arguments::CapacityArguments;
@@ -17,8 +18,8 @@ use crate::units::with_prefix;
 
 pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
     let (care, tolerance, duration) = match arguments.quick {
-        true => (Care { windows: 3, window: 0.1 }, 0.1, "about a quarter of a minute"),
-        false => (Care { windows: 7, window: 0.3 }, 0.02, "about a minute"),
+        true => (Care { windows: 3, window: 0.1 }, 0.1, "about half a minute"),
+        false => (Care { windows: 7, window: 0.3 }, 0.02, "about two minutes"),
     };
     let cores = available_parallelism().map_or(1, NonZero::get);
     say(&format!(
@@ -37,13 +38,18 @@ pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
         "ns per tetrahedron",
     ]);
     let mut sizing = Sizing::default();
+    let all = (cores > 1).then_some(cores);
     for pace in Pace::ALL {
-        let found = largest(pace.step(), tolerance, |cells| pace.measure(cells, care, &mut sizing))?;
-        table.add_row(row(pace, found));
+        for threads in std::iter::once(1).chain(all) {
+            let executor = Executor::threads(threads).map_err(Failure::problem)?;
+            let found =
+                largest(pace.step(), tolerance, |cells| pace.measure(cells, &executor, care, &mut sizing))?;
+            table.add_row(row(pace, threads, found));
+        }
     }
     let settings: Vec<_> = Pace::ALL.iter().map(|pace| pace.settings()).collect();
     say(&format!(
-        "{}\n\n{}\n{}\nmachine: {cores} cores, of which the engine uses one, {}\nmeasured in {:.0} s",
+        "{}\n\n{}\n{}\nmachine: {cores} cores, {}\nmeasured in {:.0} s",
         table_text(&table),
         heading("settings"),
         settings.join("\n"),
@@ -53,7 +59,7 @@ pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn row(pace: Pace, found: Found) -> [String; 8] {
+fn row(pace: Pace, threads: usize, found: Found) -> [String; 8] {
     let (sign, measured) = match found {
         Found::Largest(measured) => ("", measured),
         Found::AtLeast(measured) => ("≥ ", measured),
@@ -62,7 +68,7 @@ fn row(pace: Pace, found: Found) -> [String; 8] {
     let Measured { cells, nodes, edge, time, substeps } = measured;
     [
         pace.name().to_owned(),
-        "1".to_owned(),
+        threads.to_string(),
         format!("{sign}{}", grouped(cells)),
         grouped(nodes),
         with_prefix(edge, "m"),

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use viscera::body::Body;
 use viscera::dynamics::implicit::Implicit;
+use viscera::executor::Executor;
 use viscera::material::{LinearElastic, StVenantKirchhoff, Tissue};
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::{Corotational, TotalLagrangian};
@@ -124,8 +125,14 @@ impl Pace {
         Ok(world)
     }
 
-    /// Measures an organ of about so many cells.
-    pub(super) fn measure(self, cells: f64, care: Care, sizing: &mut Sizing) -> Result<Measured, Failure> {
+    /// Measures an organ of about so many cells on the threads of `executor`.
+    pub(super) fn measure(
+        self,
+        cells: f64,
+        executor: &Executor,
+        care: Care,
+        sizing: &mut Sizing,
+    ) -> Result<Measured, Failure> {
         let edge = (sizing.volume / cells).cbrt();
         let mesh = TetMesh::liver(LENGTH, edge).map_err(Failure::problem)?;
         let (cells, nodes) = (mesh.cells.len(), mesh.nodes.len());
@@ -134,7 +141,7 @@ impl Pace {
         let mut substeps = 0;
         let mut step = |world: &mut World<f32>| {
             let begin = Instant::now();
-            let report = world.step().map_err(Failure::problem)?;
+            let report = world.step_on(executor).map_err(Failure::problem)?;
             substeps += u64::from(report.substeps);
             Ok::<f64, Failure>(begin.elapsed().as_secs_f64())
         };

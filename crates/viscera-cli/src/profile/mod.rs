@@ -8,6 +8,7 @@ mod trial;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
+use viscera::executor::Executor;
 use viscera::model::Precision;
 use viscera_scene::BuiltScene;
 use viscera_scene::file;
@@ -91,7 +92,7 @@ fn run<T: Precision>(
             break;
         }
         let begin = Instant::now();
-        match built.world.step_observed(stopwatch) {
+        match built.world.step_observed(&Executor::serial(), stopwatch) {
             Ok(report) => {
                 steps.push(begin.elapsed());
                 substeps += u64::from(report.substeps);

@@ -13,13 +13,13 @@ pub struct Drive<'a, T> {
 }
 
 impl<T: Scalar> Drive<'_, T> {
-    /// Where a node has to be at the end of the step [m], in the directions that are not left to the forces; none for one that
-    /// forces move.
-    pub(super) fn target(&self, body: &SimulatedBody<T>, node: usize) -> Option<Vec3<T>> {
+    /// Where a node that is at `position` has to be at the end of the step [m], in the directions that are not left to the
+    /// forces; none for one that forces move.
+    pub(super) fn target(&self, body: &SimulatedBody<T>, node: usize, position: Vec3<T>) -> Option<Vec3<T>> {
         let state = &body.state;
         match state.motions[node] {
             NodeMotion::Free => None,
-            NodeMotion::Fixed | NodeMotion::Retired => Some(state.positions[node]),
+            NodeMotion::Fixed | NodeMotion::Retired => Some(position),
             NodeMotion::Prescribed(curve) => {
                 Some(body.rest[node] + body.prescribed[curve as usize].at(self.end).cast())
             }

@@ -11,8 +11,9 @@
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
 
 use super::Drive;
-use crate::body::SimulatedBody;
-use crate::math::Scalar;
+use crate::body::{NodeMotion, SimulatedBody};
+use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
+use crate::math::{Scalar, Vec3};
 use crate::model::Scratch;
 use crate::solver::Filter;
 use crate::stage::{Stage, Stages};
@@ -72,36 +73,69 @@ pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_
 /// First half: v_½ and x⁺, and driven nodes to where they must be.
 fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
     let (step, half) = (T::from_f64(dt), T::from_f64(0.5 * dt));
-    for node in 0..body.state.positions.len() {
-        let (target, filter) = (drive.target(body, node), body.free_directions(node));
-        let state = &mut body.state;
-        if let (Some(target), Filter::Held) = (target, filter) {
-            state.velocities[node] = (target - state.positions[node]) / step;
-            state.positions[node] = target;
-            continue;
+    for_nodes(body, &|body, node, position, velocity| {
+        if body.state.motions[node] == NodeMotion::Free {
+            let acceleration = acceleration(body, node) - *velocity * body.damping;
+            *velocity = acceleration.mul_add(half, *velocity);
+            *position = velocity.mul_add(step, *position);
+            return;
         }
-        let force = body.external_forces[node] - state.internal_forces[node];
-        let acceleration = force / state.masses[node] - state.velocities[node] * body.damping;
-        let mut velocity = acceleration.mul_add(half, state.velocities[node]);
-        if let Some(target) = target {
-            velocity = filter.merge(velocity, (target - state.positions[node]) / step);
+        let (target, filter) = (drive.target(body, node, *position), body.free_directions(node));
+        match (target, filter) {
+            (Some(target), Filter::Held) => {
+                *velocity = (target - *position) / step;
+                *position = target;
+            }
+            _ => {
+                let acceleration = acceleration(body, node) - *velocity * body.damping;
+                *velocity = acceleration.mul_add(half, *velocity);
+                if let Some(target) = target {
+                    *velocity = filter.merge(*velocity, (target - *position) / step);
+                }
+                *position = velocity.mul_add(step, *position);
+            }
         }
-        state.velocities[node] = velocity;
-        state.positions[node] = velocity.mul_add(step, state.positions[node]);
-    }
+    });
 }
 
 /// Second half: v⁺ from the forces at x⁺.
 fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
     let half = T::from_f64(0.5 * dt);
     let damped = T::ONE / (T::ONE + half * body.damping);
-    for node in 0..body.state.positions.len() {
-        let filter = body.free_directions(node);
-        let state = &mut body.state;
-        if filter != Filter::Held {
-            let force = body.external_forces[node] - state.internal_forces[node];
-            let velocity = force.mul_add(half / state.masses[node], state.velocities[node]);
-            state.velocities[node] = filter.merge(velocity * damped, state.velocities[node]);
+    for_nodes(body, &|body, node, _, velocity| {
+        let kicked = || acceleration(body, node).mul_add(half, *velocity) * damped;
+        match body.state.motions[node] {
+            NodeMotion::Free => *velocity = kicked(),
+            _ => match body.free_directions(node) {
+                Filter::Held => {}
+                filter => *velocity = filter.merge(kicked(), *velocity),
+            },
         }
-    }
+    });
 }
+
+/// (R − F)/m without damping [m/s²].
+#[inline]
+fn acceleration<T: Scalar>(body: &SimulatedBody<T>, node: usize) -> Vec3<T> {
+    (body.external_forces[node] - body.state.internal_forces[node]) * (T::ONE / body.state.masses[node])
+}
+
+/// Lets `work` change place and velocity of every node, on all threads.
+fn for_nodes<T: Scalar>(
+    body: &mut SimulatedBody<T>,
+    work: &(impl Fn(&SimulatedBody<T>, usize, &mut Vec3<T>, &mut Vec3<T>) + Sync),
+) {
+    let mut positions = std::mem::take(&mut body.state.positions);
+    let mut velocities = std::mem::take(&mut body.state.velocities);
+    let data = (NodeBlocks(&mut positions), NodeBlocks(&mut velocities));
+    let the_body = &*body;
+    the_body.scratch.executor.each(node_blocks(the_body.rest.len()), data, &|block, (x, v): Motion<'_, T>| {
+        for (i, (position, velocity)) in x.0.iter_mut().zip(v.0).enumerate() {
+            work(the_body, block * NODE_BLOCK + i, position, velocity);
+        }
+    });
+    (body.state.positions, body.state.velocities) = (positions, velocities);
+}
+
+/// Places and velocities.
+type Motion<'a, T> = (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>);

@@ -15,6 +15,21 @@ pub trait BlockSink<T> {
     }
 }
 
+/// Takes the blocks of the diagonal, one for each node, and drops the others.
+pub(crate) struct DiagonalSink<'a, T>(pub(crate) &'a mut [Mat3<T>]);
+
+impl<T: Scalar> BlockSink<T> for DiagonalSink<'_, T> {
+    fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
+        if row == column {
+            self.0[row as usize] += block;
+        }
+    }
+
+    fn keeps_diagonal_only(&self) -> bool {
+        true
+    }
+}
+
 /// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
 /// corner `corner` along `axis`. The batch holds `elements` elements, the lanes beyond are padding.
 #[inline(always)]

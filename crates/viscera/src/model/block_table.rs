@@ -52,6 +52,13 @@ impl<V: Copy> BlockTable<V> {
         }
     }
 
+    /// Block number `number`, of `lanes · columns` entries.
+    #[inline(always)]
+    pub(crate) fn block(&self, number: usize) -> &[V] {
+        let size = self.lanes * self.columns;
+        &self.values[number * size..(number + 1) * size]
+    }
+
     /// Blocks of `lanes · columns` entries.
     #[inline(always)]
     pub(crate) fn blocks(&self) -> std::slice::ChunksExact<'_, V> {

@@ -7,6 +7,7 @@ mod error;
 pub mod frequency;
 pub mod linear_tensor_mass;
 pub mod nodally_integrated;
+mod patch;
 mod precision;
 mod registry;
 pub mod tensor_mass;
@@ -15,6 +16,7 @@ pub mod total_lagrangian;
 pub mod volume_penalty;
 
 pub use block_sink::BlockSink;
+use block_sink::DiagonalSink;
 pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
 pub use linear_tensor_mass::LinearTensorMass;
@@ -26,8 +28,9 @@ pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
 use self::frequency::{FrequencyBound, frequency_bound};
+use crate::executor::Executor;
 use crate::material::Tissue;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::VolumeMesh;
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
@@ -58,6 +61,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>);
 
+    /// Adds the blocks of K(x) on the diagonal [N/m], one for each node, to `out`.
+    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        self.add_blocks(x, scratch, &mut DiagonalSink(out));
+    }
+
     /// Forces for the energy–momentum step, where the model has them.
     fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
         None
@@ -73,6 +81,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Whether the node follows the full law at displacement `u` [m]; false where an adaptive model is linear.
     fn is_nonlinear_at(&self, _displacement: Vec3<T>) -> bool {
         true
+    }
+
+    /// Rows for the copies of nodes that it sums forces or blocks in, which the scratch should have room for.
+    fn copies(&self) -> usize {
+        0
     }
 
     /// How many rings of cells around a node its force depends on: 1, unless the model averages over neighbours.
@@ -104,23 +117,49 @@ pub struct Scratch<T> {
     pub(crate) direction: Vec<[T; 4]>,
     /// Sums of forces.
     pub(crate) forces: Vec<[T; 4]>,
+    /// Sums of forces on the copies of nodes in patches.
+    copies: Vec<[T; 4]>,
     /// What a model keeps for products; the one model of a body that does.
     pub(crate) linearization: Vec<T>,
     /// Whether it has been filled.
     pub(crate) is_linearized: bool,
+    /// Who computes.
+    pub(crate) executor: Executor,
 }
 
 impl<T: Scalar> Scratch<T> {
     /// Scratch for a body of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         let rows = || vec![[T::ZERO; 4]; nodes];
-        Self { nodal: rows(), direction: rows(), forces: rows(), linearization: Vec::new(), is_linearized: false }
+        Self {
+            nodal: rows(),
+            direction: rows(),
+            forces: rows(),
+            copies: Vec::new(),
+            linearization: Vec::new(),
+            is_linearized: false,
+            executor: Executor::serial(),
+        }
+    }
+
+    /// Lets the threads of `executor` compute.
+    pub fn with_executor(self, executor: Executor) -> Self {
+        Self { executor, ..self }
     }
 
     /// Scratch for a body of `nodes` nodes, with room for all that its models keep: nothing is allocated later.
     pub fn for_models(nodes: usize, models: &[Box<dyn ForceModel<T>>]) -> Self {
         let kept = models.iter().map(|model| model.linearization_len()).max().unwrap_or(0);
-        Self { linearization: vec![T::ZERO; kept], ..Self::new(nodes) }
+        let copies = models.iter().map(|model| model.copies()).max().unwrap_or(0);
+        Self { linearization: vec![T::ZERO; kept], copies: vec![[T::ZERO; 4]; copies], ..Self::new(nodes) }
+    }
+
+    /// Who computes, and room for sums on `len` copies of nodes; scratch made for the body's models has it already.
+    pub(crate) fn copies(&mut self, len: usize) -> (&Executor, &mut [[T; 4]]) {
+        if self.copies.len() < len {
+            self.copies.resize(len, [T::ZERO; 4]);
+        }
+        (&self.executor, &mut self.copies[..len])
     }
 
     /// Fills the places with `x` and clears the forces.
@@ -150,6 +189,13 @@ impl<T: Scalar> Scratch<T> {
         self.linearization.resize(len, T::ZERO);
         self.is_linearized = true;
         (&self.nodal, &mut self.linearization)
+    }
+
+    /// The same for models that read the places for themselves: who computes, and the room.
+    pub(crate) fn start_recording(&mut self, len: usize) -> (&Executor, &mut [T]) {
+        self.linearization.resize(len, T::ZERO);
+        self.is_linearized = true;
+        (&self.executor, &mut self.linearization)
     }
 
     /// Adds the forces to `out`.

@@ -1,13 +1,14 @@
-//! The loop over tetrahedra that models share: gather corners into lanes, apply a kernel, scatter forces.
+//! The loop over tetrahedra that models share: a kernel with its constants, along the fans of all patches.
 
 use std::marker::PhantomData;
+use std::sync::Arc;
 
-use fearless_simd::{Simd, dispatch};
+use fearless_simd::Simd;
 
-use super::block_sink::{add_block_column, unit_displacement};
 use super::block_table::BlockTable;
+use super::patch::{Diagonal, Element, Measure, TetFans};
 use super::{BlockSink, ModelError, Scratch};
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
 
 /// The most constants that a kernel may keep for an element.
@@ -37,6 +38,31 @@ pub(crate) trait TetKernel: TetConstants {
     }
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
+    /// Whether [`TetKernel::diagonal`] is written out.
+    const HAS_DIAGONAL: bool = false;
+    /// The blocks of the stiffness on the diagonal, of corners 0 to 3; three products each, unless the kernel knows better.
+    #[inline(always)]
+    fn diagonal<R: Real>(constants: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
+        let zero = d.columns[0].x.zero_like();
+        let mut blocks = [Sym3::diagonal(zero); 4];
+        for corner in 0..4 {
+            let mut block = Mat3::diagonal(zero);
+            for axis in 0..3 {
+                let mut edges = [Vec3::splat(zero); 3];
+                for edge in 0..3 {
+                    if corner == 0 {
+                        edges[edge][axis] = zero.like(-1.0);
+                    } else if corner == edge + 1 {
+                        edges[edge][axis] = zero.like(1.0);
+                    }
+                }
+                let [f1, f2, f3] = Self::product(constants, d, &Mat3 { columns: edges }).columns;
+                block.columns[axis] = if corner == 0 { -(f1 + f2 + f3) } else { [f1, f2, f3][corner - 1] };
+            }
+            blocks[corner] = block.symmetric_part();
+        }
+        blocks
+    }
 }
 
 /// A number that tells something about a tetrahedron, as a function of its edge matrix.
@@ -52,7 +78,7 @@ pub(crate) struct RestTet {
     pub(crate) cell: usize,
     /// Dm⁻¹, the inverse of the edge matrix; its rows are the gradients of the shape functions 1, 2, 3 [1/m].
     pub(crate) inverse: Mat3<f64>,
-    /// Volume [m³], > 0.
+    /// Volume [m³], > 0 for a cell in its own order.
     pub(crate) volume: f64,
 }
 
@@ -79,6 +105,12 @@ impl RestTet {
         Self { cell, inverse: edges.inverse(), volume: edges.determinant() / 6.0 }
     }
 
+    /// A cell of the mesh with its corners in another order. Where that is an odd permutation, the volume is negative.
+    pub(crate) fn turned(mesh: &TetMesh, cell: usize, corners: [u32; 4]) -> Self {
+        let edges = edge_matrix(&mesh.nodes, corners);
+        Self { cell, inverse: edges.inverse(), volume: edges.determinant() / 6.0 }
+    }
+
     /// Gradients α_0..α_3 of the shape functions [1/m].
     pub(crate) fn gradients(&self) -> [Vec3<f64>; 4] {
         let [a, b, c] = self.inverse.transpose().columns;
@@ -86,101 +118,135 @@ impl RestTet {
     }
 }
 
-/// Tetrahedra in batches of lanes, with the constants of the kernel `K`.
+/// Tetrahedra in fans, with the constants of the kernel `K`.
 #[derive(Clone, Debug)]
 pub(crate) struct TetLoop<T: Scalar, K> {
-    corners: BlockTable<u32>,
+    order: Arc<TetFans>,
     constants: BlockTable<T>,
     kernel: PhantomData<K>,
 }
 
 impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
-    /// All tetrahedra of `mesh`, with constants made by `constants`.
+    /// All tetrahedra of `mesh`, with constants made by `constants`. For padding the tetrahedron at rest may be mirrored and
+    /// its volume be negative; what is made of that is switched off.
     pub(crate) fn new(mesh: &TetMesh, constants: impl Fn(&RestTet) -> Vec<f64>) -> Result<Self, ModelError> {
-        mesh.check_indices()?;
-        let cells = mesh.cells.len();
-        let mut tets = Self {
-            corners: BlockTable::new(T::LANES, cells, 4, 0),
-            constants: BlockTable::new(T::LANES, cells, K::CONSTANTS, T::ZERO),
-            kernel: PhantomData,
-        };
-        for row in 0..tets.corners.padded_rows() {
-            // Padding repeats the last cell, switched off: its deformation is as harmless as that of a real one.
-            let cell = row.min(cells - 1);
-            let rest = RestTet::new(mesh, cell)?;
-            tets.corners.set_row(row, mesh.cells[cell]);
-            tets.constants.set_row(row, constants(&rest).into_iter().map(T::from_f64));
-            if row >= cells {
-                K::deactivate(&mut tets.constants, row);
+        let order = tet_fans::<T>(mesh)?;
+        let mut table = BlockTable::new(T::LANES, order.row_count(), K::CONSTANTS, T::ZERO);
+        for tet in order.tetrahedra() {
+            let rest = RestTet::turned(mesh, tet.cell, tet.corners);
+            table.set_row(tet.row, constants(&rest).into_iter().map(T::from_f64));
+            if tet.is_padding {
+                K::deactivate(&mut table, tet.row);
             }
         }
-        Ok(tets)
+        Ok(Self { order: Arc::new(order), constants: table, kernel: PhantomData })
     }
 
     /// Size of the stored numbers [bytes].
     pub(crate) fn bytes(&self) -> usize {
-        self.corners.bytes() + self.constants.bytes()
+        self.order.bytes() + self.constants.bytes()
+    }
+
+    /// Rows that the scratch should have room for: those of blocks.
+    pub(crate) fn copies(&self) -> usize {
+        2 * self.order.copies()
     }
 
     pub(crate) fn remove(&mut self, cells: &[u32]) {
         for &cell in cells {
-            K::deactivate(&mut self.constants, cell as usize);
+            K::deactivate(&mut self.constants, self.order.row(cell));
         }
     }
+
+    /// The constants of the tetrahedra of a slot.
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
+        let block = self.constants.block(slot);
+        let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
+        for column in 0..K::CONSTANTS {
+            constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        }
+        constants
+    }
+
+    /// The constants of one tetrahedron.
+    fn constants_of<U: Scalar>(&self, row: usize) -> [U; MAX_CONSTANTS] {
+        let mut constants = [U::ZERO; MAX_CONSTANTS];
+        for (column, constant) in constants[..K::CONSTANTS].iter_mut().enumerate() {
+            *constant = U::from_f64(self.constants.get(row, column).to_f64());
+        }
+        constants
+    }
+}
+
+/// The order of the tetrahedra of `mesh`, all of which have a volume.
+pub(crate) fn tet_fans<T: Scalar>(mesh: &TetMesh) -> Result<TetFans, ModelError> {
+    mesh.check_indices()?;
+    for cell in 0..mesh.cells.len() {
+        RestTet::new(mesh, cell)?;
+    }
+    Ok(TetFans::new(mesh, T::LANES))
 }
 
 impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
     /// The largest measure of all tetrahedra, and 0 if there is none above.
-    pub(crate) fn largest(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> T {
-        scratch.start(x);
-        dispatch!(dispatch_level(), simd => self.largest_with(simd, &scratch.nodal))
+    pub(crate) fn largest(&self, x: &[Vec3<T>], scratch: &Scratch<T>) -> T {
+        self.order.largest(x, self, &scratch.executor)
+    }
+}
+
+impl<T: Scalar, K: TetMeasure> Measure<T> for TetLoop<T, K> {
+    #[inline(always)]
+    fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
+        K::measure(&self.load(simd, slot)[..K::CONSTANTS], edges)
+    }
+}
+
+/// Forces of a loop, their derivative, and the forces between two places.
+struct Forces<'a, T: Scalar, K>(&'a TetLoop<T, K>);
+struct Product<'a, T: Scalar, K>(&'a TetLoop<T, K>);
+struct Mean<'a, T: Scalar, K>(&'a TetLoop<T, K>);
+
+impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        K::forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0])
+    }
+}
+
+impl<T: Scalar, K: TetKernel> Element<T, 2> for Product<'_, T, K> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+        K::product(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0], &edges[1])
+    }
+}
+
+impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+        K::mean_forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0], &edges[1])
+    }
+}
+
+impl<T: Scalar, K: TetKernel> Diagonal<T> for TetLoop<T, K> {
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        K::HAS_DIAGONAL
     }
 
     #[inline(always)]
-    fn largest_with<S: Simd>(&self, simd: S, x: &[[T; 4]]) -> T {
-        let mut largest = T::Lanes::<S>::splat(simd, T::ZERO);
-        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
-            let constants = load_constants::<T, S, K>(simd, constants);
-            largest = largest.max(K::measure(&constants[..K::CONSTANTS], &gather_edges(simd, x, nodes)));
-        }
-        let mut lanes = [T::ZERO; MAX_LANES];
-        largest.store(&mut lanes);
-        lanes.into_iter().fold(T::ZERO, Real::max)
+    fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
+        K::diagonal(&self.load(simd, slot)[..K::CONSTANTS], edges)
     }
 }
 
 impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(crate) fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_forces_with(simd, nodal, forces));
-        scratch.finish(out);
-    }
-
-    #[inline(always)]
-    fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
-            let constants = load_constants::<T, S, K>(simd, constants);
-            let d = gather_edges(simd, x, nodes);
-            scatter_forces(simd, K::forces(&constants[..K::CONSTANTS], &d), nodes, out);
-        }
+        self.order.add([x], &Forces(self), scratch, out);
     }
 
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start(x);
-        scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
-        scratch.finish(out);
-    }
-
-    #[inline(always)]
-    fn add_product_with<S: Simd>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
-            let constants = load_constants::<T, S, K>(simd, constants);
-            let (d, dd) = (gather_edges(simd, x, nodes), gather_edges(simd, dx, nodes));
-            scatter_forces(simd, K::product(&constants[..K::CONSTANTS], &d, &dd), nodes, out);
-        }
+        self.order.add([x, dx], &Product(self), scratch, out);
     }
 
     pub(crate) fn add_mean_forces(
@@ -190,78 +256,51 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         scratch: &mut Scratch<T>,
         out: &mut [Vec3<T>],
     ) {
-        scratch.start(from);
-        scratch.start_direction(to);
-        let Scratch { nodal, direction, forces, .. } = scratch;
-        self.add_mean_forces_with(baseline(), nodal, direction, forces);
-        scratch.finish(out);
+        self.order.add_baseline([from, to], &Mean(self), scratch, out);
     }
 
-    #[inline(always)]
-    fn add_mean_forces_with<S: Simd>(&self, simd: S, from: &[[T; 4]], to: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, constants) in self.corners.blocks().zip(self.constants.blocks()) {
-            let constants = load_constants::<T, S, K>(simd, constants);
-            let (from, to) = (gather_edges(simd, from, nodes), gather_edges(simd, to, nodes));
-            scatter_forces(simd, K::mean_forces(&constants[..K::CONSTANTS], &from, &to), nodes, out);
-        }
-    }
-
-    pub(crate) fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
-        scratch.start(x);
-        self.add_blocks_with(baseline(), &scratch.nodal, sink);
-    }
-
-    #[inline(always)]
-    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
-        for (block, (nodes, constants)) in self.corners.blocks().zip(self.constants.blocks()).enumerate() {
-            let constants = load_constants::<T, S, K>(simd, constants);
-            let d = gather_edges(simd, x, nodes);
+    pub(crate) fn add_blocks(&self, x: &[Vec3<T>], sink: &mut dyn BlockSink<T>) {
+        for tet in self.order.tetrahedra().filter(|tet| !tet.is_padding) {
+            let constants = self.constants_of::<T>(tet.row);
+            let d = edge_matrix(x, tet.corners);
             for corner in 0..4 {
-                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 4]; 3];
-                for axis in 0..3 {
-                    let [a, b, c, d_corner] = unit_displacement::<T, S, 4>(simd, corner, axis);
-                    let dd = Mat3::from_columns(b - a, c - a, d_corner - a);
-                    let [f1, f2, f3] = K::product(&constants[..K::CONSTANTS], &d, &dd).columns;
-                    columns[axis] = [-(f1 + f2 + f3), f1, f2, f3];
+                let columns = [0, 1, 2].map(|axis| {
+                    let mut ends = [Vec3::ZERO; 4];
+                    ends[corner][axis] = T::ONE;
+                    let dd = Mat3::from_columns(ends[1] - ends[0], ends[2] - ends[0], ends[3] - ends[0]);
+                    K::product(&constants[..K::CONSTANTS], &d, &dd).columns
+                });
+                let [x, y, z] = columns.map(|[f1, f2, f3]| [-(f1 + f2 + f3), f1, f2, f3]);
+                for p in 0..4 {
+                    if p == corner || !sink.keeps_diagonal_only() {
+                        sink.add(tet.corners[p], tet.corners[corner], Mat3::from_columns(x[p], y[p], z[p]));
+                    }
                 }
-                add_block_column::<T, S, 4>(&columns, nodes, corner, self.corners.rows() - block * T::LANES, sink);
             }
         }
     }
 
+    pub(crate) fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        self.order.add_diagonal(x, self, scratch, out);
+    }
+
     /// Sum of the energies [J], element by element in double precision.
     pub(crate) fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let mut constants = [0.0; MAX_CONSTANTS];
-        (0..self.corners.rows())
-            .map(|row| {
-                for (column, constant) in constants[..K::CONSTANTS].iter_mut().enumerate() {
-                    *constant = self.constants.get(row, column).to_f64();
-                }
-                let [a, b, c, d] = [0, 1, 2, 3].map(|i| x[self.corners.get(row, i) as usize].cast::<f64>());
+        let there = self.order.tetrahedra().filter(|tet| !tet.is_padding);
+        there
+            .map(|tet| {
+                let constants = self.constants_of::<f64>(tet.row);
+                let [a, b, c, d] = tet.corners.map(|node| x[node as usize].cast::<f64>());
                 K::energy(&constants[..K::CONSTANTS], &Mat3::from_columns(b - a, c - a, d - a))
             })
             .sum()
     }
 }
 
-#[inline(always)]
-fn load_constants<T: Scalar, S: Simd, K: TetConstants>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_CONSTANTS] {
-    let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
-    for column in 0..K::CONSTANTS {
-        constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
-    }
-    constants
-}
-
-/// Edge matrices of a batch; `nodes` holds the four corners, corner after corner.
-#[inline(always)]
-pub(crate) fn gather_edges<T: Scalar, S: Simd>(simd: S, x: &[[T; 4]], nodes: &[u32]) -> Mat3<T::Lanes<S>> {
-    let origin = gather_corner(simd, x, nodes, 0);
-    Mat3::from_columns(
-        gather_corner(simd, x, nodes, 1) - origin,
-        gather_corner(simd, x, nodes, 2) - origin,
-        gather_corner(simd, x, nodes, 3) - origin,
-    )
+/// [x1−x0, x2−x0, x3−x0] of a tetrahedron.
+pub(crate) fn edge_matrix<R: Real>(x: &[Vec3<R>], corners: [u32; 4]) -> Mat3<R> {
+    let [a, b, c, d] = corners.map(|node| x[node as usize]);
+    Mat3::from_columns(b - a, c - a, d - a)
 }
 
 /// Places of one corner of a batch; `nodes` holds the corners of the batch, corner after corner.
@@ -285,18 +324,4 @@ pub(crate) fn scatter_corner<T: Scalar, S: Simd>(
     out: &mut [[T; 4]],
 ) {
     T::Lanes::<S>::scatter_add(force.to_array(), &nodes[corner * T::LANES..(corner + 1) * T::LANES], out);
-}
-
-#[inline(always)]
-pub(crate) fn scatter_forces<T: Scalar, S: Simd>(
-    _simd: S,
-    forces: Mat3<T::Lanes<S>>,
-    nodes: &[u32],
-    out: &mut [[T; 4]],
-) {
-    let [f1, f2, f3] = forces.columns;
-    scatter_corner::<T, S>(-(f1 + f2 + f3), nodes, 0, out);
-    scatter_corner::<T, S>(f1, nodes, 1, out);
-    scatter_corner::<T, S>(f2, nodes, 2, out);
-    scatter_corner::<T, S>(f3, nodes, 3, out);
 }

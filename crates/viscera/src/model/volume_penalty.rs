@@ -95,8 +95,12 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
         self.tets.add_product(x, dx, scratch, out);
     }
 
-    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
-        self.tets.add_blocks(x, scratch, sink);
+    fn add_blocks(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.tets.add_blocks(x, sink);
+    }
+
+    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        self.tets.add_diagonal(x, scratch, out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
@@ -105,6 +109,10 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
 
     fn remove(&mut self, cells: &[u32]) {
         self.tets.remove(cells);
+    }
+
+    fn copies(&self) -> usize {
+        self.tets.copies()
     }
 
     fn bytes(&self) -> usize {

@@ -1,12 +1,21 @@
-use crate::math::{Mat3, Scalar, Vec3};
+use fearless_simd::dispatch;
+
+use super::{Filter, LinearOperator, Preconditioner, Size};
+use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
 use crate::model::BlockSink;
 
 /// Block-Jacobi preconditioner: the inverses of the 3×3 blocks on the diagonal, one for each node.
 #[derive(Clone, Debug, Default)]
 pub struct BlockJacobi<T> {
-    /// Blocks, and after [`BlockJacobi::invert`] their inverses.
+    /// The blocks of K.
     blocks: Vec<Mat3<T>>,
+    /// Inverses of the blocks of the matrix: xx, yy, zz, xy, xz, yz of eight nodes at a time.
+    inverses: Vec<[[T; NODES]; 6]>,
 }
+
+/// Nodes that are handled at a time: whole registers of each component.
+const NODES: usize = 8;
 
 /// A block whose determinant is below this share of that of a ball of the same trace counts as singular.
 const SINGULAR: f64 = 1e-6;
@@ -14,7 +23,8 @@ const SINGULAR: f64 = 1e-6;
 impl<T: Scalar> BlockJacobi<T> {
     /// Memory for `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
-        Self { blocks: vec![Mat3::ZERO; nodes] }
+        let inverses = vec![[[T::ZERO; NODES]; 6]; nodes.div_ceil(NODES)];
+        Self { blocks: vec![Mat3::ZERO; nodes], inverses }
     }
 
     /// Clears the blocks before new ones are added.
@@ -22,30 +32,99 @@ impl<T: Scalar> BlockJacobi<T> {
         self.blocks.fill(Mat3::ZERO);
     }
 
-    /// The blocks: of the matrix until [`BlockJacobi::invert`], of its inverse after it.
+    /// The blocks of K.
     pub fn blocks_mut(&mut self) -> &mut [Mat3<T>] {
         &mut self.blocks
     }
 
     /// Inverts the blocks `scale` K + `masses` I [kg/s²]. Where that is not positive definite (tissue under compression), the
     /// mass alone stands in: a preconditioner has to be positive definite, whatever the matrix is.
-    pub fn invert(&mut self, scale: T, masses: impl Iterator<Item = T>) {
-        for (block, mass) in self.blocks.iter_mut().zip(masses) {
+    ///
+    /// The `filters` go into the inverses, S P⁻¹ S, so that nothing across them counts.
+    pub fn invert(&mut self, scale: T, masses: impl Iterator<Item = T>, filters: &[Filter<T>]) {
+        for (node, (block, mass)) in self.blocks.iter().zip(masses).enumerate() {
             let sum = *block * scale + Mat3::diagonal(mass);
-            *block = if is_positive_definite(&sum) {
+            let inverse = if is_positive_definite(&sum) {
                 sum.inverse()
             } else if mass > T::ZERO {
                 Mat3::diagonal(T::ONE / mass)
             } else {
                 Mat3::IDENTITY
             };
+            let columns = |block: Mat3<T>| Mat3 { columns: block.columns.map(|column| filters[node].apply(column)) };
+            let inverse = match filters[node] {
+                Filter::Free => inverse,
+                _ => columns(columns(inverse).transpose()),
+            };
+            let Sym3 { xx, yy, zz, xy, xz, yz } = inverse.symmetric_part();
+            for (column, number) in self.inverses[node / NODES].iter_mut().zip([xx, yy, zz, xy, xz, yz]) {
+                column[node % NODES] = number;
+            }
         }
     }
 
     /// P⁻¹ r of a node.
     #[inline]
-    pub fn apply(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
-        self.blocks[node] * residual
+    pub(crate) fn at(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
+        let [xx, yy, zz, xy, xz, yz] = self.inverses[node / NODES].map(|column| column[node % NODES]);
+        Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz }) * residual
+    }
+
+    /// P⁻¹ r of a block of nodes into `corrected`, and r·P⁻¹ r.
+    #[inline(always)]
+    fn apply_to_block(&self, block: usize, residual: &[Vec3<T>], corrected: &mut [Vec3<T>]) -> f64 {
+        let first = block * NODE_BLOCK;
+        let ((residual, rest), (corrected, rest_corrected)) =
+            (residual.as_chunks::<NODES>(), corrected.as_chunks_mut::<NODES>());
+        let mut squares = [T::ZERO; NODES];
+        for ((r, z), inverse) in residual.iter().zip(corrected).zip(&self.inverses[first / NODES..]) {
+            let [xx, yy, zz, xy, xz, yz] = inverse;
+            let (mut x, mut y, mut w) = ([T::ZERO; NODES], [T::ZERO; NODES], [T::ZERO; NODES]);
+            for i in 0..NODES {
+                (x[i], y[i], w[i]) = (r[i].x, r[i].y, r[i].z);
+            }
+            for i in 0..NODES {
+                let along = [
+                    xx[i] * x[i] + xy[i] * y[i] + xz[i] * w[i],
+                    xy[i] * x[i] + yy[i] * y[i] + yz[i] * w[i],
+                    xz[i] * x[i] + yz[i] * y[i] + zz[i] * w[i],
+                ];
+                squares[i] += x[i] * along[0] + y[i] * along[1] + w[i] * along[2];
+                z[i] = Vec3::from(along);
+            }
+        }
+        let done = first + residual.len() * NODES;
+        let mut square: f64 = squares.into_iter().map(T::to_f64).sum();
+        for (i, (&r, z)) in rest.iter().zip(rest_corrected).enumerate() {
+            *z = self.at(done + i, r);
+            square += r.dot(*z).to_f64();
+        }
+        square
+    }
+}
+
+impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
+    fn apply(
+        &mut self,
+        _matrix: &mut dyn LinearOperator<T>,
+        _filters: &[Filter<T>],
+        residual: &[Vec3<T>],
+        corrected: &mut [Vec3<T>],
+        executor: &Executor,
+    ) -> Size {
+        let (this, blocks) = (&*self, node_blocks(residual.len()));
+        let work = |block, (ReadBlocks(r), NodeBlocks(z)): (ReadBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| dispatch!(dispatch_level(), _simd => this.apply_to_block(block, r, z));
+        let square = executor.fold(blocks, (ReadBlocks(residual), NodeBlocks(corrected)), &work, &|a, b| a + b);
+        let square = square.unwrap_or(0.0);
+        Size { corrected: square, squared_norm: square }
+    }
+
+    fn squared_norm(&self, residual: &[Vec3<T>], executor: &Executor) -> f64 {
+        let work = |block: usize, ReadBlocks(r): ReadBlocks<'_, Vec3<T>>| {
+            let square = |(i, &r): (usize, &Vec3<T>)| r.dot(self.at(block * NODE_BLOCK + i, r)).to_f64();
+            r.iter().enumerate().map(square).sum::<f64>()
+        };
+        executor.fold(node_blocks(residual.len()), ReadBlocks(residual), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 }
 

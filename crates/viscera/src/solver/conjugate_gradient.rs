@@ -6,7 +6,9 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::{BlockJacobi, Filter, LinearOperator};
+use super::vectors::{add_scaled, dot, scale_and_add};
+use super::{Filter, LinearOperator, Preconditioner, Size};
+use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
 
 /// When the iteration ends.
@@ -14,7 +16,8 @@ use crate::math::{Scalar, Vec3};
 pub enum Stop {
     /// After this many iterations [≥ 1]: the same time for every step.
     Iterations(u32),
-    /// When the residual, in the norm of the preconditioner, is below `relative` times that of b and A x at the start.
+    /// When the residual, in the norm of the matrix's own inverse blocks on the diagonal, is below `relative` times that of b and
+    /// A x at the start: the same for every preconditioner.
     Tolerance {
         /// Share [> 0, < 1].
         relative: f64,
@@ -62,7 +65,7 @@ pub enum Ending {
 pub struct SolveReport {
     /// Products with the matrix, without the one at the start.
     pub iterations: u32,
-    /// Residual at the end over its scale, in the norm of the preconditioner.
+    /// Residual at the end over its scale, in the norm of [`Stop::Tolerance`].
     pub residual: f64,
     /// How it ended.
     pub ending: Ending,
@@ -74,10 +77,12 @@ pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,
     product: Vec<Vec3<T>>,
+    /// Nodes with a prescribed direction.
+    filtered: Vec<u32>,
     history: Vec<f64>,
 }
 
-/// What a solve is about, apart from the matrix.
+/// What a solve is about, apart from the matrix and its preconditioner.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a, T> {
     /// Right-hand side b.
@@ -86,10 +91,10 @@ pub struct Problem<'a, T> {
     pub filters: &'a [Filter<T>],
     /// Prescribed values z.
     pub prescribed: &'a [Vec3<T>],
-    /// Preconditioner.
-    pub preconditioner: &'a BlockJacobi<T>,
     /// A positive lower bound of the matrix, one number for each node: its part that comes from the masses.
     pub masses: &'a [T],
+    /// Who computes.
+    pub executor: &'a Executor,
 }
 
 impl<T: Scalar> ConjugateGradient<T> {
@@ -97,7 +102,8 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn new(nodes: usize, iterations: u32) -> Self {
         let zeros = || vec![Vec3::ZERO; nodes];
         let history = Vec::with_capacity(iterations as usize + 1);
-        Self { residual: zeros(), direction: zeros(), product: zeros(), history }
+        let filtered = Vec::with_capacity(nodes);
+        Self { residual: zeros(), direction: zeros(), product: zeros(), filtered, history }
     }
 
     /// Residuals of the last solve over their scale: at the start and after each iteration.
@@ -109,85 +115,92 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn solve(
         &mut self,
         matrix: &mut impl LinearOperator<T>,
+        preconditioner: &mut impl Preconditioner<T>,
         problem: &Problem<'_, T>,
         stop: Stop,
         x: &mut [Vec3<T>],
     ) -> SolveReport {
-        let filters = problem.filters;
+        let executor = problem.executor;
         self.history.clear();
-        let scale = self.start(matrix, problem, x);
-        let mut rho = self.precondition(problem, None);
+        self.filtered.clear();
+        let nodes = problem.filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free);
+        self.filtered.extend(nodes.map(|(node, _)| node as u32));
+        let scale = self.start(matrix, preconditioner, problem, x);
+        let mut size = self.precondition(matrix, preconditioner, problem, None);
         let goal = stop.relative() * scale;
-        self.note(rho, scale);
+        self.note(size.squared_norm, scale);
         let mut ending = Ending::Exhausted;
         let mut iterations = 0;
         let at_most = stop.at_most().min((self.history.capacity() as u32).saturating_sub(1));
         while iterations < at_most {
-            if rho.sqrt() <= goal || rho <= 0.0 {
+            if size.squared_norm.sqrt() <= goal || size.corrected <= 0.0 {
                 ending = Ending::Converged;
                 break;
             }
             matrix.apply(&self.direction, &mut self.product);
-            for (product, filter) in self.product.iter_mut().zip(filters) {
-                *product = filter.apply(*product);
-            }
+            filter(&self.filtered, problem.filters, &mut self.product);
             iterations += 1;
-            let curvature = dot(&self.direction, &self.product);
+            let curvature = dot(executor, &self.direction, &self.product);
             if curvature.is_nan() || curvature <= 0.0 {
                 if iterations == 1 {
-                    self.step_against_masses(problem, rho, x);
+                    self.step_against_masses(problem, size.corrected, x);
                 }
                 ending = Ending::NegativeCurvature;
                 break;
             }
-            let length = T::from_f64(rho / curvature);
-            for node in 0..x.len() {
-                x[node] = self.direction[node].mul_add(length, x[node]);
-                self.residual[node] = self.product[node].mul_add(-length, self.residual[node]);
-            }
-            rho = self.precondition(problem, Some(rho));
-            self.note(rho, scale);
+            let length = T::from_f64(size.corrected / curvature);
+            add_scaled(executor, x, length, &self.direction);
+            add_scaled(executor, &mut self.residual, -length, &self.product);
+            size = self.precondition(matrix, preconditioner, problem, Some(size));
+            self.note(size.squared_norm, scale);
         }
-        if ending == Ending::Exhausted && rho.sqrt() <= goal {
+        if ending == Ending::Exhausted && size.squared_norm.sqrt() <= goal {
             ending = Ending::Converged;
         }
         SolveReport { iterations, residual: self.history.last().copied().unwrap_or(0.0), ending }
     }
 
     /// Puts x to S·guess + (I − S) z and the residual to S (b − A x); gives the scale of residuals.
-    fn start(&mut self, matrix: &mut impl LinearOperator<T>, problem: &Problem<'_, T>, x: &mut [Vec3<T>]) -> f64 {
+    fn start(
+        &mut self,
+        matrix: &mut impl LinearOperator<T>,
+        preconditioner: &impl Preconditioner<T>,
+        problem: &Problem<'_, T>,
+        x: &mut [Vec3<T>],
+    ) -> f64 {
         for node in 0..x.len() {
             x[node] = problem.filters[node].merge(x[node], problem.prescribed[node]);
         }
         matrix.apply(x, &mut self.product);
-        let (mut of_rhs, mut of_product) = (0.0, 0.0);
-        for node in 0..x.len() {
-            let filter = &problem.filters[node];
-            let (rhs, product) = (filter.apply(problem.rhs[node]), filter.apply(self.product[node]));
-            of_rhs += rhs.dot(problem.preconditioner.apply(node, rhs)).to_f64();
-            of_product += product.dot(problem.preconditioner.apply(node, product)).to_f64();
-            self.residual[node] = rhs - product;
+        self.residual.copy_from_slice(problem.rhs);
+        filter(&self.filtered, problem.filters, &mut self.residual);
+        filter(&self.filtered, problem.filters, &mut self.product);
+        let of_rhs = preconditioner.squared_norm(&self.residual, problem.executor);
+        let of_product = preconditioner.squared_norm(&self.product, problem.executor);
+        for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
+            *residual = *residual - product;
         }
         of_rhs.sqrt() + of_product.sqrt()
     }
 
-    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r.
-    fn precondition(&mut self, problem: &Problem<'_, T>, before: Option<f64>) -> f64 {
-        let mut rho = 0.0;
-        for node in 0..self.residual.len() {
-            let residual = self.residual[node];
-            let corrected = problem.filters[node].apply(problem.preconditioner.apply(node, residual));
-            rho += residual.dot(corrected).to_f64();
-            self.product[node] = corrected;
+    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r and the residual's norm.
+    fn precondition(
+        &mut self,
+        matrix: &mut impl LinearOperator<T>,
+        preconditioner: &mut impl Preconditioner<T>,
+        problem: &Problem<'_, T>,
+        before: Option<Size>,
+    ) -> Size {
+        let size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product, problem.executor);
+        filter(&self.filtered, problem.filters, &mut self.product);
+        match before {
+            Some(before) => {
+                let weight = T::from_f64(size.corrected / before.corrected);
+                scale_and_add(problem.executor, &mut self.direction, weight, &self.product);
+            }
+            None => self.direction.copy_from_slice(&self.product),
         }
-        let weight = T::from_f64(before.map_or(0.0, |before| rho / before));
-        for (direction, &corrected) in self.direction.iter_mut().zip(&self.product) {
-            *direction = match before {
-                Some(_) => direction.mul_add(weight, corrected),
-                None => corrected,
-            };
-        }
-        rho
+        size
     }
 
     /// x + p ρ/(p·M p): the step along the first direction if the masses were the whole matrix.
@@ -202,12 +215,16 @@ impl<T: Scalar> ConjugateGradient<T> {
         }
     }
 
-    fn note(&mut self, rho: f64, scale: f64) {
-        self.history.push(if scale > 0.0 { rho.max(0.0).sqrt() / scale } else { 0.0 });
+    fn note(&mut self, square: f64, scale: f64) {
+        self.history.push(if scale > 0.0 { square.max(0.0).sqrt() / scale } else { 0.0 });
     }
 }
 
-/// a·b over all nodes, added up in double precision in the order of the nodes.
-pub(crate) fn dot<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
-    a.iter().zip(b).map(|(&a, &b)| a.dot(b).to_f64()).sum()
+/// S v at the nodes where that is not v. Once would leave the rounding of reactions, which are larger by far than what is left
+/// of the residual; twice leaves the rounding of that.
+fn filter<T: Scalar>(nodes: &[u32], filters: &[Filter<T>], v: &mut [Vec3<T>]) {
+    for &node in nodes {
+        let (filter, value) = (&filters[node as usize], &mut v[node as usize]);
+        *value = filter.apply(filter.apply(*value));
+    }
 }

@@ -1,4 +1,5 @@
 use super::{BlockJacobi, ConjugateGradient, Ending, LinearSolver, Problem, SolverError, Stop, System};
+use crate::executor::Executor;
 use crate::math::Vec3;
 
 /// Conjugate gradients on the assembled matrix: what needs no factorisation, for large bodies and for programs without one.
@@ -47,7 +48,7 @@ impl LinearSolver for Iterative {
             for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
                 *block = system.matrix.block(node, node);
             }
-            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()));
+            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()), &system.filters);
         }
         Ok(())
     }
@@ -62,11 +63,12 @@ impl LinearSolver for Iterative {
             rhs: right,
             filters: &system.filters,
             prescribed: &zeros,
-            preconditioner,
             masses: &vec![0.0; zeros.len()],
+            executor: &Executor::serial(),
         };
         let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
-        let report = conjugate_gradient.solve(&mut system.matrix.clone(), &problem, stop, &mut solution);
+        let report =
+            conjugate_gradient.solve(&mut system.matrix.clone(), preconditioner, &problem, stop, &mut solution);
         match report.ending {
             Ending::Converged => right.copy_from_slice(&solution),
             Ending::NegativeCurvature => return Err(SolverError::NotPositiveDefinite),

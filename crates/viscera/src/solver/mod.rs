@@ -7,16 +7,19 @@ mod conjugate_gradient;
 mod filter;
 mod iterative;
 mod linear_solver;
+mod preconditioner;
 mod system;
+mod vectors;
 
 pub use block_jacobi::BlockJacobi;
 pub use block_matrix::BlockMatrix;
-pub(crate) use conjugate_gradient::dot;
 pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, Stop};
 pub use filter::Filter;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
+pub use preconditioner::{Preconditioner, Size};
 pub use system::System;
+pub(crate) use vectors::{dot, scale_and_add_masses};
 
 use crate::math::{Scalar, Vec3};
 

@@ -4,12 +4,15 @@ use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
 use crate::dynamics::{Drive, explicit};
+use crate::executor::Executor;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, StageObserver, Stages};
 
 /// The most sub-steps of one step.
 pub(super) const MAX_SUBSTEPS: f64 = 1e5;
+/// Cells from which on threads pay: a step of fewer is over before they have woken up.
+const WORTH_THREADS: usize = 4000;
 /// How many times a step is tried again with more sub-steps.
 const MAX_RETRIES: u32 = 5;
 
@@ -42,18 +45,40 @@ impl<T: Scalar> World<T> {
     /// # Errors
     /// [`StepError`] saying which body and cell, and what to change.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
-        self.step_in(Stages::unobserved())
+        self.step_on(&Executor::serial())
     }
 
-    /// Advances by one step, the same to the last bit, and tells `observer` when its stages begin and end.
+    /// The same on the threads of `executor`. The bits of the result do not depend on how many there are; a world too small to
+    /// gain from them stays on the calling thread.
     ///
     /// # Errors
     /// As [`World::step`].
-    pub fn step_observed(&mut self, observer: &dyn StageObserver) -> Result<StepReport, StepError> {
-        self.step_in(Stages::observed_by(observer))
+    pub fn step_on(&mut self, executor: &Executor) -> Result<StepReport, StepError> {
+        self.step_among(executor, Stages::unobserved())
     }
 
-    fn step_in(&mut self, stages: Stages) -> Result<StepReport, StepError> {
+    /// The same, with the same bits, and `observer` is told when the stages of the step begin and end.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    pub fn step_observed(
+        &mut self,
+        executor: &Executor,
+        observer: &dyn StageObserver,
+    ) -> Result<StepReport, StepError> {
+        self.step_among(executor, Stages::observed_by(observer))
+    }
+
+    fn step_among(&mut self, executor: &Executor, stages: Stages) -> Result<StepReport, StepError> {
+        let cells: usize = self.bodies.iter().map(|body| body.mesh.cell_count()).sum();
+        let executor = if cells < WORTH_THREADS { Executor::serial() } else { executor.clone() };
+        for body in &mut self.bodies {
+            body.scratch.executor = executor.clone();
+        }
+        executor.enter(|| self.step_once(stages))
+    }
+
+    fn step_once(&mut self, stages: Stages) -> Result<StepReport, StepError> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
         stages.run(Stage::Guard, || self.keep());
         let Motion { substeps, retries, implicit } = self.move_bodies(&span, stages).inspect_err(|_| self.undo())?;

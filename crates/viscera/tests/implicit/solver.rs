@@ -1,5 +1,6 @@
 //! The modified conjugate gradient on small matrices.
 
+use viscera::executor::Executor;
 use viscera::math::Mat3;
 use viscera::mesh::{TetMesh, VolumeMesh};
 use viscera::model::BlockSink;
@@ -53,13 +54,13 @@ fn solve(matrix: &mut BlockMatrix<f64>, case: &Case, stop: Stop) -> (Vec<Vector>
     for node in 0..nodes {
         preconditioner.add(node as u32, node as u32, matrix.block(node, node));
     }
-    preconditioner.invert(1.0, std::iter::repeat_n(0.0, nodes));
+    preconditioner.invert(1.0, std::iter::repeat_n(0.0, nodes), &case.filters);
     let masses = vec![1.0; nodes];
     let Case { rhs, filters, prescribed } = case;
-    let problem = Problem { rhs, filters, prescribed, preconditioner: &preconditioner, masses: &masses };
+    let problem = Problem { rhs, filters, prescribed, masses: &masses, executor: &Executor::serial() };
     let mut solver = ConjugateGradient::new(nodes, stop.at_most());
     let mut x = vec![Vector::new(0.3, -0.2, 0.1); nodes];
-    let report = solver.solve(matrix, &problem, stop, &mut x);
+    let report = solver.solve(matrix, &mut preconditioner, &problem, stop, &mut x);
     (x, report, solver.history().to_vec())
 }
 

@@ -14,6 +14,7 @@ mod guides;
 mod reference_cylinder;
 mod reference_tube;
 mod support;
+mod threads;
 mod world_invariance;
 mod world_refusal;
 mod world_snapshot;

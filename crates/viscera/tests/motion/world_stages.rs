@@ -1,10 +1,11 @@
 //! Stages of a step as an observer hears of them, and the cell that a stable step hangs on.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 use viscera::body::Body;
 use viscera::dynamics::implicit::{Implicit, MatrixForm};
+use viscera::executor::Executor;
 use viscera::mesh::TetMesh;
 use viscera::model::TotalLagrangian;
 use viscera::solver::Stop;
@@ -16,18 +17,18 @@ use crate::support::{assert_relative, bits, free_bar, side, stvk, world};
 /// Counts stages and holds them to be nested.
 #[derive(Default)]
 struct Counter {
-    open: RefCell<Vec<Stage>>,
-    counts: RefCell<BTreeMap<Stage, u32>>,
+    open: Mutex<Vec<Stage>>,
+    counts: Mutex<BTreeMap<Stage, u32>>,
 }
 
 impl StageObserver for Counter {
     fn enter(&self, stage: Stage) {
-        self.open.borrow_mut().push(stage);
-        *self.counts.borrow_mut().entry(stage).or_default() += 1;
+        self.open.lock().unwrap().push(stage);
+        *self.counts.lock().unwrap().entry(stage).or_default() += 1;
     }
 
     fn leave(&self, stage: Stage) {
-        assert_eq!(self.open.borrow_mut().pop(), Some(stage));
+        assert_eq!(self.open.lock().unwrap().pop(), Some(stage));
     }
 }
 
@@ -35,11 +36,11 @@ impl StageObserver for Counter {
 fn observe(mut observed: World<f64>, mut alone: World<f64>) -> impl Fn(Stage) -> u32 {
     let counter = Counter::default();
     for _ in 0..2 {
-        assert_eq!(observed.step_observed(&counter).unwrap(), alone.step().unwrap());
+        assert_eq!(observed.step_observed(&Executor::serial(), &counter).unwrap(), alone.step().unwrap());
     }
     assert_eq!(bits(&observed), bits(&alone));
-    assert!(counter.open.borrow().is_empty());
-    let counts = counter.counts.into_inner();
+    assert!(counter.open.lock().unwrap().is_empty());
+    let counts = counter.counts.into_inner().unwrap();
     move |stage| counts.get(&stage).copied().unwrap_or(0)
 }
 

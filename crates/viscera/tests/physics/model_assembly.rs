@@ -59,6 +59,11 @@ fn check(name: &str, model: &mut dyn ForceModel<f64>, x: &[Vector], dx: &[Vector
             assert_near(&dense.times(dx), &model.product(x, dx), 1e-12, name);
             let diagonal = Dense::of(model, x, &mut scratch, true);
             assert!(dense.diagonal().eq(diagonal.diagonal()), "{name}: another diagonal");
+            let columns = |blocks: &[Matrix]| blocks.iter().flat_map(|block| block.columns).collect::<Vec<_>>();
+            let mut at_once = vec![Matrix::ZERO; x.len()];
+            model.add_diagonal(x, &mut scratch, &mut at_once);
+            let expected: Vec<_> = dense.diagonal().copied().collect();
+            assert_near(&columns(&at_once), &columns(&expected), 1e-12, name);
         }
     }
 }

@@ -47,17 +47,26 @@ impl<T: Scalar> Step<'_, T> {
         }
         let rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
-            if let Some(matrix) = &mut memory.matrix {
-                matrix.clear();
-            }
-            let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix: memory.matrix.as_mut() };
-            for model in &state.models {
-                model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+            match &mut memory.matrix {
+                Some(matrix) => {
+                    matrix.clear();
+                    let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix };
+                    for model in &state.models {
+                        model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+                    }
+                }
+                None => {
+                    let blocks = memory.preconditioner.blocks_mut();
+                    for model in &state.models {
+                        model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
+                    }
+                }
             }
             let rounding = rounding(memory, &state.positions);
-            memory.preconditioner.invert(stiffness, memory.masses.iter().copied());
+            memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
             rounding
         });
+        let executor = self.body.scratch.executor.clone();
         let mut tangent = Tangent {
             models: &state.models,
             positions: &state.positions,
@@ -71,12 +80,18 @@ impl<T: Scalar> Step<'_, T> {
             rhs: &memory.lack,
             filters: &memory.filters,
             prescribed: &memory.prescribed,
-            preconditioner: &memory.preconditioner,
             masses: &memory.masses,
+            executor: &executor,
         };
         let stop = self.settings.linear;
         let report = self.stages.run(Stage::LinearSolve, || {
-            memory.conjugate_gradient.solve(&mut tangent, &problem, stop, &mut memory.correction)
+            memory.conjugate_gradient.solve(
+                &mut tangent,
+                &mut memory.preconditioner,
+                &problem,
+                stop,
+                &mut memory.correction,
+            )
         });
         Solve {
             iterations: report.iterations,
@@ -88,22 +103,16 @@ impl<T: Scalar> Step<'_, T> {
     }
 }
 
-/// Blocks go to the preconditioner, and to the matrix where there is one.
+/// Blocks go to the matrix, and those on the diagonal to the preconditioner as well.
 struct Sinks<'a, T> {
     diagonal: &'a mut BlockJacobi<T>,
-    matrix: Option<&'a mut BlockMatrix<T>>,
+    matrix: &'a mut BlockMatrix<T>,
 }
 
 impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
         self.diagonal.add(row, column, block);
-        if let Some(matrix) = &mut self.matrix {
-            matrix.add(row, column, block);
-        }
-    }
-
-    fn keeps_diagonal_only(&self) -> bool {
-        self.matrix.is_none()
+        self.matrix.add(row, column, block);
     }
 }
 

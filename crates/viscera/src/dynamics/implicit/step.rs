@@ -53,9 +53,9 @@ impl<T: Scalar> Step<'_, T> {
         }
         let dt = T::from_f64(self.dt);
         for node in 0..self.memory.start.len() {
-            let (target, filter) = (self.drive.target(self.body, node), self.body.free_directions(node));
             let state = &self.body.state;
             let position = state.positions[node];
+            let (target, filter) = (self.drive.target(self.body, node, position), self.body.free_directions(node));
             let memory = &mut *self.memory;
             memory.increment[node] = Vec3::ZERO;
             memory.coast_velocities[node] = Vec3::ZERO;

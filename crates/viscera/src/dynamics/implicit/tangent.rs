@@ -1,6 +1,6 @@
 use crate::math::{Scalar, Vec3};
 use crate::model::{ForceModel, Scratch};
-use crate::solver::{BlockMatrix, LinearOperator};
+use crate::solver::{BlockMatrix, LinearOperator, scale_and_add_masses};
 use crate::stage::{Stage, Stages};
 
 /// The matrix of an implicit step: masses on the diagonal and a multiple of the stiffness.
@@ -28,8 +28,6 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
                 }
             }
         }
-        for ((out, &x), &mass) in out.iter_mut().zip(x).zip(self.masses) {
-            *out = x.mul_add(mass, *out * self.stiffness);
-        }
+        scale_and_add_masses(&self.scratch.executor, out, self.stiffness, self.masses, x);
     }
 }

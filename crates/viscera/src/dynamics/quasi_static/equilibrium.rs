@@ -1,5 +1,6 @@
 use super::{LoadStep, StaticError, StaticFailure, StaticReport};
 use crate::body::{NodeMotion, SimulatedBody};
+use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 use crate::solver::{BlockMatrix, LinearOperator, LinearSolver, SolverError, System, dot};
@@ -175,7 +176,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     /// Moves along `step` until the energy falls as it should, or the residual does; gives whether that was found.
     fn search(&mut self, step: &[Vec3<f64>], loads: &[Vec3<T>], residual: &[Vec3<f64>], share: f64) -> bool {
         let from = self.body.state.positions.clone();
-        let slope = dot(step, residual);
+        let slope = dot(&Executor::serial(), step, residual);
         let before = self.energy(&from, loads);
         let mut length = 1.0;
         for _ in 0..HALVINGS {
@@ -269,7 +270,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
 }
 
 fn norm(values: &[Vec3<f64>]) -> f64 {
-    dot(values, values).sqrt()
+    dot(&Executor::serial(), values, values).sqrt()
 }
 
 /// Gives blocks of any precision to a matrix in double precision.

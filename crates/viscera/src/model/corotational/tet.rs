@@ -1,6 +1,8 @@
 //! Corotational tetrahedra in batches of lanes.
 
-use fearless_simd::{Simd, dispatch};
+use std::sync::Arc;
+
+use fearless_simd::Simd;
 
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
@@ -8,11 +10,12 @@ use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::TetMesh;
-use crate::model::block_sink::{BlockSink, add_block, add_block_column, unit_displacement};
+use crate::model::block_sink::{BlockSink, DiagonalSink};
 use crate::model::block_table::BlockTable;
-use crate::model::tet_loop::{RestTet, gather_edges, scatter_forces};
+use crate::model::patch::{Diagonal, Element, Record, TetFans};
+use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Scratch};
 
 /// Columns before those of the law: Dm⁻¹ by columns, V0.
@@ -29,7 +32,7 @@ const MOST_LINEARIZED: usize = GRADIENTS + 3;
 /// what Gram–Schmidt finds in F then is Q Q0ᵀ, and nothing is left to do for Q0.
 #[derive(Clone, Debug)]
 pub(super) struct CorotationalTets<T: Scalar> {
-    corners: BlockTable<u32>,
+    order: Arc<TetFans>,
     constants: BlockTable<T>,
     formulation: Formulation,
     fibred: bool,
@@ -62,32 +65,23 @@ impl<R: Real> Batch<R> {
 
 impl<T: Scalar> CorotationalTets<T> {
     pub(super) fn new(mesh: &TetMesh, tissue: &Tissue, formulation: Formulation) -> Result<Self, ModelError> {
-        mesh.check_indices()?;
-        let cells = mesh.cells.len();
+        let order = tet_fans::<T>(mesh)?;
         let fibred = super::has_fibres(tissue);
         let columns = SHAPE + if fibred { FIBRED } else { ISOTROPIC };
-        let mut tets = Self {
-            corners: BlockTable::new(T::LANES, cells, 4, 0),
-            constants: BlockTable::new(T::LANES, cells, columns, T::ZERO),
-            formulation,
-            fibred,
-        };
-        for row in 0..tets.corners.padded_rows() {
-            // padding repeats the last cell, without volume
-            let cell = row.min(cells - 1);
-            let rest = RestTet::new(mesh, cell)?;
+        let mut constants = BlockTable::new(T::LANES, order.row_count(), columns, T::ZERO);
+        for tet in order.tetrahedra() {
+            let rest = RestTet::turned(mesh, tet.cell, tet.corners);
             let frame = match formulation.rotation {
-                Rotation::Qr => qr(&mesh.edge_matrix(cell)),
+                Rotation::Qr => qr(&mesh.edge_matrix(tet.cell)),
                 Rotation::Polar | Rotation::Svd => Mat3::IDENTITY,
             };
-            let stiffness = tissue.at_rest(cell);
+            let stiffness = tissue.at_rest(tet.cell);
             let law = Hooke::numbers(&stiffness, frame.transpose_mul(stiffness.direction), fibred);
             let shape = (rest.inverse * frame).columns.into_iter().flat_map(Vec3::to_array);
-            let numbers = shape.chain([if row < cells { rest.volume } else { 0.0 }]).chain(law);
-            tets.corners.set_row(row, mesh.cells[cell]);
-            tets.constants.set_row(row, numbers.map(T::from_f64));
+            let numbers = shape.chain([if tet.is_padding { 0.0 } else { rest.volume }]).chain(law);
+            constants.set_row(tet.row, numbers.map(T::from_f64));
         }
-        Ok(tets)
+        Ok(Self { order: Arc::new(order), constants, formulation, fibred })
     }
 
     fn columns(&self) -> usize {
@@ -99,7 +93,8 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, block: &[T]) -> Batch<T::Lanes<S>> {
+    fn load<S: Simd>(&self, simd: S, slot: usize) -> Batch<T::Lanes<S>> {
+        let block = self.constants.block(slot);
         let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); MOST];
         for column in 0..self.columns() {
             numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
@@ -107,78 +102,22 @@ impl<T: Scalar> CorotationalTets<T> {
         Batch::at(&numbers, self.fibred)
     }
 
-    #[inline(always)]
-    fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, block) in self.corners.blocks().zip(self.constants.blocks()) {
-            let Batch { inverse, volume, hooke } = self.load(simd, block);
-            let f = gather_edges(simd, x, nodes) * inverse;
-            let stress = self.formulation.stress(&hooke, &self.formulation.rotation(&f), &f);
-            scatter_forces(simd, stress * volume * inverse.transpose(), nodes, out);
-        }
-    }
-
-    #[inline(always)]
-    fn add_product_with<S: Simd>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, block) in self.corners.blocks().zip(self.constants.blocks()) {
-            let Batch { inverse, volume, hooke } = self.load(simd, block);
-            let f = gather_edges(simd, x, nodes) * inverse;
-            let df = gather_edges(simd, dx, nodes) * inverse;
-            let r = self.formulation.rotation(&f);
-            let dr = self.formulation.rotation_along(&f, &r, &df);
-            let stress = self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
-            scatter_forces(simd, stress * volume * inverse.transpose(), nodes, out);
-        }
-    }
-
-    #[inline(always)]
-    fn linearize_with<S: Simd>(&self, simd: S, x: &[[T; 4]], linearization: &mut [T]) {
-        let rows = linearization.chunks_exact_mut(self.linearized_columns() * T::LANES);
-        for ((nodes, block), row) in self.corners.blocks().zip(self.constants.blocks()).zip(rows) {
-            let Batch { inverse, volume, hooke } = self.load(simd, block);
-            let f = gather_edges(simd, x, nodes) * inverse;
-            let r = self.formulation.rotation(&f);
-            let (transport, scale) = self.formulation.transport(&r, &f);
-            let gradients = transport * inverse.transpose() * (volume * scale).sqrt();
-            for i in 0..3 {
-                store(gradients.columns[i], &mut row[3 * i * T::LANES..]);
-            }
-            if let Some((direction, _)) = hooke.fibre {
-                store(r * direction, &mut row[GRADIENTS * T::LANES..]);
-            }
-        }
-    }
-
-    /// 129 flops for an isotropic law: 9 for dD, 54 for dD gᵀ, 15 for the stress, 45 for its products, 6 for corner 0.
-    #[inline(always)]
-    fn add_linearized_product_with<S: Simd>(&self, simd: S, linearization: &[T], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
-        for ((nodes, block), row) in self.corners.blocks().zip(self.constants.blocks()).zip(rows) {
-            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
-            let strain = (gather_edges(simd, dx, nodes) * gradients.transpose()).symmetric_part();
-            scatter_forces(simd, times(hooke.stress(strain), &gradients), nodes, out);
-        }
-    }
-
-    #[inline(always)]
-    fn load_linearized<S: Simd>(&self, simd: S, block: &[T], row: &[T]) -> Turned<T::Lanes<S>> {
-        let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
-        let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
-        let fibre = if self.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
-        Turned { hooke: Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients }
-    }
-
-    #[inline(always)]
-    fn add_linearized_blocks_with<S: Simd>(&self, simd: S, linearization: &[T], sink: &mut dyn BlockSink<T>) {
-        let rows = linearization.chunks_exact(self.linearized_columns() * T::LANES);
-        for (batch, ((nodes, block), row)) in self.corners.blocks().zip(self.constants.blocks()).zip(rows).enumerate() {
-            let elements = self.corners.rows() - batch * T::LANES;
-            let Turned { hooke, gradients } = self.load_linearized(simd, block, row);
-            let [b, c, d] = gradients.columns;
+    /// The blocks of the tangent with the rotations held.
+    fn add_linearized_blocks(&self, linearization: &[T], sink: &mut dyn BlockSink<T>) {
+        let columns = self.linearized_columns();
+        for tet in self.order.tetrahedra().filter(|tet| !tet.is_padding) {
+            let (slot, lane) = (tet.row / T::LANES, tet.row % T::LANES);
+            let number = |column: usize| linearization[(slot * columns + column) * T::LANES + lane];
+            let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
+            let constant = |column: usize| self.constants.get(tet.row, SHAPE + column);
+            let fibre = self.fibred.then(|| (vector(GRADIENTS), constant(5)));
+            let hooke = Hooke { lambda: constant(0), mu: constant(1), fibre };
+            let [b, c, d] = [vector(0), vector(3), vector(6)];
             let gradients = [-(b + c + d), b, c, d];
             for q in 0..4 {
                 for p in 0..4 {
                     if p == q || !sink.keeps_diagonal_only() {
-                        add_block::<T, S>(&hooke.block(gradients[p], gradients[q]), nodes, [p, q], elements, sink);
+                        sink.add(tet.corners[p], tet.corners[q], hooke.block(gradients[p], gradients[q]));
                     }
                 }
             }
@@ -186,34 +125,129 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     /// The blocks of the exact tangent, column by column.
-    #[inline(always)]
-    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
-        for (batch, (nodes, block)) in self.corners.blocks().zip(self.constants.blocks()).enumerate() {
-            let Batch { inverse, volume, hooke } = self.load(simd, block);
-            let f = gather_edges(simd, x, nodes) * inverse;
+    fn add_exact_blocks(&self, x: &[Vec3<T>], sink: &mut dyn BlockSink<T>) {
+        for tet in self.order.tetrahedra().filter(|tet| !tet.is_padding) {
+            let Batch { inverse, volume, hooke } = self.numbers::<T>(tet.row);
+            let f = edge_matrix(x, tet.corners) * inverse;
             let r = self.formulation.rotation(&f);
             for corner in 0..4 {
-                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 4]; 3];
-                for axis in 0..3 {
-                    let [a, b, c, d] = unit_displacement::<T, S, 4>(simd, corner, axis);
-                    let df = Mat3::from_columns(b - a, c - a, d - a) * inverse;
+                let columns = [0, 1, 2].map(|axis| {
+                    let mut ends = [Vec3::ZERO; 4];
+                    ends[corner][axis] = T::ONE;
+                    let df = Mat3::from_columns(ends[1] - ends[0], ends[2] - ends[0], ends[3] - ends[0]) * inverse;
                     let dr = self.formulation.rotation_along(&f, &r, &df);
                     let stress = self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
-                    let [f1, f2, f3] = (stress * volume * inverse.transpose()).columns;
-                    columns[axis] = [-(f1 + f2 + f3), f1, f2, f3];
+                    (stress * volume * inverse.transpose()).columns
+                });
+                let [x, y, z] = columns.map(|[f1, f2, f3]| [-(f1 + f2 + f3), f1, f2, f3]);
+                for p in 0..4 {
+                    if p == corner || !sink.keeps_diagonal_only() {
+                        sink.add(tet.corners[p], tet.corners[corner], Mat3::from_columns(x[p], y[p], z[p]));
+                    }
                 }
-                add_block_column::<T, S, 4>(&columns, nodes, corner, self.corners.rows() - batch * T::LANES, sink);
             }
         }
     }
 
-    /// The numbers of one element in double precision.
-    fn numbers(&self, row: usize) -> Batch<f64> {
-        let mut numbers = [0.0; MOST];
+    /// The numbers of one element.
+    fn numbers<U: Scalar>(&self, row: usize) -> Batch<U> {
+        let mut numbers = [U::ZERO; MOST];
         for (column, number) in numbers.iter_mut().enumerate().take(self.columns()) {
-            *number = self.constants.get(row, column).to_f64();
+            *number = U::from_f64(self.constants.get(row, column).to_f64());
         }
         Batch::at(&numbers, self.fibred)
+    }
+}
+
+/// Forces.
+struct Forces<'a, T: Scalar>(&'a CorotationalTets<T>);
+/// The derivative of the forces, of the rotations too.
+struct ExactProduct<'a, T: Scalar>(&'a CorotationalTets<T>);
+/// The derivative with the rotations held, from turned gradients.
+struct FrozenProduct<'a, T: Scalar> {
+    tets: &'a CorotationalTets<T>,
+    linearization: &'a [T],
+}
+/// Turns the gradients.
+struct Turning<'a, T: Scalar>(&'a CorotationalTets<T>);
+
+impl<T: Scalar> Element<T, 1> for Forces<'_, T> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        let Batch { inverse, volume, hooke } = self.0.load(simd, slot);
+        let f = edges[0] * inverse;
+        let stress = self.0.formulation.stress(&hooke, &self.0.formulation.rotation(&f), &f);
+        stress * volume * inverse.transpose()
+    }
+}
+
+impl<T: Scalar> Element<T, 2> for ExactProduct<'_, T> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+        let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
+        let (f, df) = (edges[0] * inverse, edges[1] * inverse);
+        let r = formulation.rotation(&f);
+        let dr = formulation.rotation_along(&f, &r, &df);
+        let stress = formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
+        stress * volume * inverse.transpose()
+    }
+}
+
+impl<T: Scalar> FrozenProduct<'_, T> {
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, slot: usize) -> Turned<T::Lanes<S>> {
+        let block = self.tets.constants.block(slot);
+        let columns = self.tets.linearized_columns() * T::LANES;
+        let row = &self.linearization[slot * columns..(slot + 1) * columns];
+        let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
+        let fibre = if self.tets.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
+        Turned { hooke: Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients }
+    }
+}
+
+// 129 flops for an isotropic law: 9 for dD, 54 for dD gᵀ, 15 for the stress, 45 for its products, 6 for corner 0.
+impl<T: Scalar> Element<T, 1> for FrozenProduct<'_, T> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        let Turned { hooke, gradients } = self.load(simd, slot);
+        let strain = (edges[0] * gradients.transpose()).symmetric_part();
+        times(hooke.stress(strain), &gradients)
+    }
+}
+
+impl<T: Scalar> Diagonal<T> for FrozenProduct<'_, T> {
+    fn is_wide(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn blocks<S: Simd>(&self, simd: S, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
+        let Turned { hooke, gradients } = self.load(simd, slot);
+        let [b, c, d] = gradients.columns;
+        let block = |gradient| hooke.block(gradient, gradient).symmetric_part();
+        [block(-(b + c + d)), block(b), block(c), block(d)]
+    }
+}
+
+impl<T: Scalar> Record<T> for Turning<'_, T> {
+    fn columns(&self) -> usize {
+        self.0.linearized_columns()
+    }
+
+    #[inline(always)]
+    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) {
+        let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
+        let f = *edges * inverse;
+        let r = formulation.rotation(&f);
+        let (transport, scale) = formulation.transport(&r, &f);
+        let gradients = transport * inverse.transpose() * (volume * scale).sqrt();
+        for i in 0..3 {
+            store(gradients.columns[i], &mut row[3 * i * T::LANES..]);
+        }
+        if let Some((direction, _)) = hooke.fibre {
+            store(r * direction, &mut row[GRADIENTS * T::LANES..]);
+        }
     }
 }
 
@@ -229,39 +263,31 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_forces_with(simd, nodal, forces));
-        scratch.finish(out);
+        self.order.add([x], &Forces(self), scratch, out);
     }
 
     fn linearization_len(&self) -> usize {
         match self.formulation.tangent {
-            Tangent::Frozen => self.corners.padded_rows() * self.linearized_columns(),
+            Tangent::Frozen => self.order.row_count() * self.linearized_columns(),
             Tangent::Exact => 0,
         }
     }
 
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
         if self.formulation.tangent == Tangent::Frozen {
-            scratch.start(x);
-            let (nodal, linearization) = scratch.start_linearization(self.linearization_len());
-            dispatch!(dispatch_level(), simd => self.linearize_with(simd, nodal, linearization));
+            let (executor, linearization) = scratch.start_recording(self.linearization_len());
+            self.order.record(x, &Turning(self), executor, linearization);
         }
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        scratch.start_direction(dx);
         if scratch.is_linearized {
-            scratch.clear_forces();
-            let Scratch { direction, forces, linearization, .. } = scratch;
-            dispatch!(dispatch_level(), simd => self.add_linearized_product_with(simd, linearization, direction, forces));
+            let linearization = std::mem::take(&mut scratch.linearization);
+            self.order.add([dx], &FrozenProduct { tets: self, linearization: &linearization }, scratch, out);
+            scratch.linearization = linearization;
         } else {
-            scratch.start(x);
-            let Scratch { nodal, direction, forces, .. } = scratch;
-            dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, forces));
+            self.order.add([x, dx], &ExactProduct(self), scratch, out);
         }
-        scratch.finish(out);
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
@@ -271,22 +297,30 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
                 if !was_linearized {
                     self.linearize(x, scratch);
                 }
-                let linearization = &scratch.linearization;
-                self.add_linearized_blocks_with(baseline(), linearization, sink);
+                self.add_linearized_blocks(&scratch.linearization, sink);
                 scratch.is_linearized = was_linearized;
             }
-            Tangent::Exact => {
-                scratch.start(x);
-                self.add_blocks_with(baseline(), &scratch.nodal, sink);
-            }
+            Tangent::Exact => self.add_exact_blocks(x, sink),
+        }
+    }
+
+    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        if scratch.is_linearized {
+            let linearization = std::mem::take(&mut scratch.linearization);
+            let frozen = FrozenProduct { tets: self, linearization: &linearization };
+            self.order.add_diagonal(x, &frozen, scratch, out);
+            scratch.linearization = linearization;
+        } else {
+            self.add_blocks(x, scratch, &mut DiagonalSink(out));
         }
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        (0..self.corners.rows())
-            .map(|row| {
-                let Batch { inverse, volume, hooke } = self.numbers(row);
-                let [a, b, c, d] = [0, 1, 2, 3].map(|i| x[self.corners.get(row, i) as usize].cast::<f64>());
+        let there = self.order.tetrahedra().filter(|tet| !tet.is_padding);
+        there
+            .map(|tet| {
+                let Batch { inverse, volume, hooke } = self.numbers::<f64>(tet.row);
+                let [a, b, c, d] = tet.corners.map(|node| x[node as usize].cast::<f64>());
                 let f = Mat3::from_columns(b - a, c - a, d - a) * inverse;
                 volume * self.formulation.energy(&hooke, &self.formulation.rotation(&f), &f)
             })
@@ -295,12 +329,16 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn remove(&mut self, cells: &[u32]) {
         for &cell in cells {
-            *self.constants.get_mut(cell as usize, VOLUME) = T::ZERO;
+            *self.constants.get_mut(self.order.row(cell), VOLUME) = T::ZERO;
         }
     }
 
+    fn copies(&self) -> usize {
+        2 * self.order.copies()
+    }
+
     fn bytes(&self) -> usize {
-        self.corners.bytes() + self.constants.bytes()
+        self.order.bytes() + self.constants.bytes()
     }
 
     fn clone_box(&self) -> Box<dyn ForceModel<T>> {

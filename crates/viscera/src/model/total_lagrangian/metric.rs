@@ -82,6 +82,36 @@ fn isotropic_energy<R: Real>(c: &[R], g: Sym3<R>) -> R {
     (c[6] * trace_of_strain(a0, g).squared()).half() + c[7] * m.contract(m.transpose()) * g.xx.like(0.25)
 }
 
+/// Entries of a matrix over the edges that belong to the corners 0 to 3, on the diagonal: corner 0 moves all edges back.
+#[inline(always)]
+pub(super) fn at_corners<R: Real>(matrix: Sym3<R>) -> [R; 4] {
+    let Sym3 { xx, yy, zz, xy, xz, yz } = matrix;
+    [xx + yy + zz + (xy + xz + yz).double(), xx, yy, zz]
+}
+
+/// Columns that belong to the corners 0 to 3.
+#[inline(always)]
+pub(super) fn columns_at_corners<R: Real>(matrix: &Mat3<R>) -> [Vec3<R>; 4] {
+    let [a, b, c] = matrix.columns;
+    [-(a + b + c), a, b, c]
+}
+
+/// With W = D A0 and S the contravariant stress, the block of corner i is S_ii I + V (λ + μ) w_i w_iᵀ + V μ A0_ii D A0 Dᵀ.
+#[inline(always)]
+fn isotropic_diagonal<R: Real>(c: &[R], d: &Mat3<R>, stress: Sym3<R>) -> [Sym3<R>; 4] {
+    let a0 = metric(c);
+    let w = *d * a0;
+    let left = (w * d.transpose()).symmetric_part();
+    let (own, metrics, stresses) = (columns_at_corners(&w), at_corners(a0), at_corners(stress));
+    let mut blocks = [left; 4];
+    for corner in 0..4 {
+        blocks[corner] = left * (c[7] * metrics[corner])
+            + Sym3::square(own[corner]) * (c[6] + c[7])
+            + Sym3::diagonal(stresses[corner]);
+    }
+    blocks
+}
+
 impl TetConstants for StVenantKirchhoffMetric {
     const CONSTANTS: usize = 8;
 
@@ -93,6 +123,12 @@ impl TetConstants for StVenantKirchhoffMetric {
 
 impl TetKernel for StVenantKirchhoffMetric {
     const KEEPS_ENERGY: bool = true;
+    const HAS_DIAGONAL: bool = true;
+
+    #[inline(always)]
+    fn diagonal<R: Real>(constants: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
+        isotropic_diagonal(constants, d, contravariant_stress(constants, d.gram()))
+    }
 
     // D in the middle, the stress, which is linear in G, at the mean of both G (Simo, Tarnow 1992).
     #[inline(always)]
@@ -152,6 +188,19 @@ impl TetConstants for TransverseMetric {
 
 impl TetKernel for TransverseMetric {
     const KEEPS_ENERGY: bool = true;
+    const HAS_DIAGONAL: bool = true;
+
+    // Fibres add 2 V κ_a b_i² (s I + D b (D b)ᵀ) to the block of corner i.
+    #[inline(always)]
+    fn diagonal<R: Real>(constants: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
+        let (g, b) = (d.gram(), fibre(constants));
+        let mut blocks = isotropic_diagonal(constants, d, contravariant_stress(constants, g));
+        let along = Sym3::square(*d * b) + Sym3::diagonal(fibre_strain(b, g));
+        for (block, share) in blocks.iter_mut().zip([-(b.x + b.y + b.z), b.x, b.y, b.z]) {
+            *block = *block + along * (constants[11] * share.squared());
+        }
+        blocks
+    }
 
     #[inline(always)]
     fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {

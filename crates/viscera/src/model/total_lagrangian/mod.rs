@@ -15,7 +15,7 @@ use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{BlockSink, ForceModel, MeanForces, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
 
 /// The direct model of any law, on tetrahedra or hexahedra.
@@ -148,8 +148,12 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.add_product(x, dx, scratch, out);
     }
 
-    fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
-        self.tets.add_blocks(x, scratch, sink);
+    fn add_blocks(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
+        self.tets.add_blocks(x, sink);
+    }
+
+    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        self.tets.add_diagonal(x, scratch, out);
     }
 
     fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
@@ -162,6 +166,10 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
 
     fn remove(&mut self, cells: &[u32]) {
         self.tets.remove(cells);
+    }
+
+    fn copies(&self) -> usize {
+        self.tets.copies()
     }
 
     fn bytes(&self) -> usize {

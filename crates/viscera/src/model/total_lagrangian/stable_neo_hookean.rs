@@ -8,6 +8,7 @@
 
 use super::super::block_table::BlockTable;
 use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
+use super::metric::{at_corners, columns_at_corners};
 use crate::material::{LawFamily, StableNeoHookean};
 use crate::math::{Mat3, Real, Scalar, Sym3};
 
@@ -47,6 +48,25 @@ impl TetConstants for StableNeoHookeanMetric {
 }
 
 impl TetKernel for StableNeoHookeanMetric {
+    const HAS_DIAGONAL: bool = true;
+
+    // The area vector cof D_i of a face does not change with the corner opposite to it: the pressure adds nothing.
+    #[inline(always)]
+    fn diagonal<R: Real>(c: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
+        let (a0, one) = (metric(c), c[0].like(1.0));
+        let stretched = *d * a0;
+        let share = one / (stretched.contract(*d) + one);
+        let (own, areas) = (columns_at_corners(&stretched), columns_at_corners(&d.cofactor()));
+        let (metrics, volume) = (at_corners(a0), c[7] * c[6].squared());
+        let mut blocks = [a0; 4];
+        for corner in 0..4 {
+            blocks[corner] = Sym3::square(own[corner]) * (c[8] * share.squared()).double()
+                + Sym3::square(areas[corner]) * volume
+                + Sym3::diagonal(c[8] * (one - share) * metrics[corner]);
+        }
+        blocks
+    }
+
     #[inline(always)]
     fn energy<R: Real>(c: &[R], d: &Mat3<R>) -> R {
         let one = c[0].like(1.0);
@@ -60,10 +80,10 @@ impl TetKernel for StableNeoHookeanMetric {
     #[inline(always)]
     fn forces<R: Real>(c: &[R], d: &Mat3<R>) -> Mat3<R> {
         let (a0, one) = (metric(c), c[0].like(1.0));
-        let cofactor = d.cofactor();
-        let shape = c[8] * (one - one / (a0.contract(d.gram()) + one));
+        let (cofactor, stretched) = (d.cofactor(), *d * a0);
+        let shape = c[8] * (one - one / (stretched.contract(*d) + one));
         let pressure = pressure(c, d.columns[0].dot(cofactor.columns[0]));
-        *d * (a0 * shape) + cofactor * pressure
+        stretched * shape + cofactor * pressure
     }
 
     // dI_C = 2 A0:DᵀdD

@@ -1,0 +1,146 @@
+//! Who computes: one thread, or a pool of them.
+//!
+//! Work is divided into parts whose number and bounds follow from the data alone, and results are joined in the order of the
+//! parts: the bits of a result do not depend on how many threads there are.
+
+use std::sync::Arc;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Threads that a step may use; by default just the one that calls.
+///
+/// Cloning is cheap, and clones share their threads.
+#[derive(Clone, Debug, Default)]
+pub struct Executor {
+    pool: Option<Arc<ThreadPool>>,
+}
+
+/// Why there are no threads to compute with.
+#[derive(Debug, thiserror::Error)]
+pub enum ExecutorError {
+    /// The operating system refused to start them.
+    #[error("{threads} threads could not be started: {source}. Ask for fewer")]
+    NoThreads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the operating system said.
+        source: rayon::ThreadPoolBuildError,
+    },
+}
+
+impl Executor {
+    /// The calling thread alone.
+    pub fn serial() -> Self {
+        Self::default()
+    }
+
+    /// A pool of `threads` threads [≥ 1]; one thread needs no pool.
+    ///
+    /// # Errors
+    /// [`ExecutorError::NoThreads`] where the system refuses to start them.
+    pub fn threads(threads: usize) -> Result<Self, ExecutorError> {
+        if threads <= 1 {
+            return Ok(Self::serial());
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.map(|pool| Self { pool: Some(Arc::new(pool)) })
+            .map_err(|source| ExecutorError::NoThreads { threads, source })
+    }
+
+    /// How many threads there are.
+    pub fn thread_count(&self) -> usize {
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
+    }
+
+    /// Does `work` among the threads: what it divides then finds them awake.
+    pub(crate) fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// Hands part after part of `data` to `work`, with the part's number, on whichever threads are free.
+    pub(crate) fn each<D: Divide>(&self, parts: usize, data: D, work: &(impl Fn(usize, D) + Sync)) {
+        self.fold(parts, data, work, &|(), ()| ());
+    }
+
+    /// The same where every part has a result: neighbours are merged two by two, always the same two. None without parts.
+    pub(crate) fn fold<D: Divide, R: Send>(
+        &self,
+        parts: usize,
+        data: D,
+        work: &(impl Fn(usize, D) -> R + Sync),
+        merge: &(impl Fn(R, R) -> R + Sync),
+    ) -> Option<R> {
+        (parts > 0).then(|| match &self.pool {
+            Some(pool) if parts > 1 => pool.install(|| fold::<D, R, true>(0, parts, data, work, merge)),
+            _ => fold::<D, R, false>(0, parts, data, work, merge),
+        })
+    }
+}
+
+fn fold<D: Divide, R: Send, const POOL: bool>(
+    first: usize,
+    parts: usize,
+    data: D,
+    work: &(impl Fn(usize, D) -> R + Sync),
+    merge: &(impl Fn(R, R) -> R + Sync),
+) -> R {
+    if parts == 1 {
+        return work(first, data);
+    }
+    let half = parts / 2;
+    let (left, right) = data.divide(half);
+    let left = || fold::<D, R, POOL>(first, half, left, work, merge);
+    let right = || fold::<D, R, POOL>(first + half, parts - half, right, work, merge);
+    let (left, right) = if POOL { rayon::join(left, right) } else { (left(), right()) };
+    merge(left, right)
+}
+
+/// Arrays that can be divided between threads.
+pub(crate) trait Divide: Send + Sized {
+    /// The first `parts` parts, and the rest.
+    fn divide(self, parts: usize) -> (Self, Self);
+}
+
+/// Nodes in a part of a nodal array: enough work to be worth handing over, and few enough to stay in the fastest cache.
+pub(crate) const NODE_BLOCK: usize = 1024;
+
+/// How many parts a nodal array has.
+pub(crate) fn node_blocks(nodes: usize) -> usize {
+    nodes.div_ceil(NODE_BLOCK)
+}
+
+/// A nodal array in parts of [`NODE_BLOCK`] nodes, the last one perhaps shorter.
+pub(crate) struct NodeBlocks<'a, V>(pub(crate) &'a mut [V]);
+
+impl<V: Send> Divide for NodeBlocks<'_, V> {
+    fn divide(self, parts: usize) -> (Self, Self) {
+        let (left, right) = self.0.split_at_mut(parts * NODE_BLOCK);
+        (Self(left), Self(right))
+    }
+}
+
+/// The same for an array that is only read.
+pub(crate) struct ReadBlocks<'a, V>(pub(crate) &'a [V]);
+
+impl<V: Sync> Divide for ReadBlocks<'_, V> {
+    fn divide(self, parts: usize) -> (Self, Self) {
+        let (left, right) = self.0.split_at(parts * NODE_BLOCK);
+        (Self(left), Self(right))
+    }
+}
+
+impl Divide for () {
+    fn divide(self, _: usize) -> (Self, Self) {
+        ((), ())
+    }
+}
+
+impl<A: Divide, B: Divide> Divide for (A, B) {
+    fn divide(self, parts: usize) -> (Self, Self) {
+        let ((a, c), (b, d)) = (self.0.divide(parts), self.1.divide(parts));
+        ((a, b), (c, d))
+    }
+}

@@ -1,0 +1,157 @@
+//! Cells in patches: parts of a mesh so small that the places and the forces of their nodes stay in the fastest cache, and
+//! which are handed to whichever thread is free.
+//!
+//! A patch numbers its nodes for itself. A node that several patches share has a copy in each of them; the copies are added
+//! up in the order of the patches, so that the bits of the sum do not depend on the number of threads.
+
+mod fan;
+mod partition;
+mod tet_fans;
+
+pub(crate) use tet_fans::{Diagonal, Element, Measure, Record, TetFans};
+
+use self::partition::partition;
+use crate::executor::{Divide, Executor, NODE_BLOCK, NodeBlocks, node_blocks};
+use crate::math::{Mat3, Scalar, Sym3, Vec3};
+
+/// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
+/// modulo it is a number of a node, and needs no check.
+pub(crate) const PATCH_NODES: usize = 512;
+
+/// Numbers of the nodes of a patch, four to a node, so that lanes load and store whole rows.
+pub(crate) type PatchRows<T> = [[T; 4]; PATCH_NODES];
+
+/// The patches of a mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Patches {
+    /// Nodes of each patch, patch after patch.
+    nodes: Vec<u32>,
+    /// Where each patch begins in `nodes`, and the end.
+    starts: Vec<usize>,
+    /// Where the copies of each node are, node after node: their places in `nodes`.
+    copies: Vec<u32>,
+    /// Where each node begins in `copies`, and the end.
+    copy_starts: Vec<u32>,
+}
+
+impl Patches {
+    /// Divides `cells` over the `nodes` [m]; gives the cells of each patch as well.
+    pub(crate) fn new<const CORNERS: usize>(nodes: &[Vec3<f64>], cells: &[[u32; CORNERS]]) -> (Self, Vec<Vec<u32>>) {
+        let parts = partition(nodes, cells, PATCH_NODES);
+        let mut patches = Self { nodes: Vec::new(), starts: vec![0], copies: Vec::new(), copy_starts: Vec::new() };
+        for part in &parts {
+            let mut touched: Vec<u32> = part.iter().flat_map(|&cell| cells[cell as usize]).collect();
+            touched.sort_unstable();
+            touched.dedup();
+            patches.nodes.append(&mut touched);
+            patches.starts.push(patches.nodes.len());
+        }
+        patches.copies = (0..patches.nodes.len() as u32).collect();
+        patches.copies.sort_by_key(|&copy| patches.nodes[copy as usize]);
+        let mut ends = vec![0; nodes.len() + 1];
+        for &node in &patches.nodes {
+            ends[node as usize + 1] += 1;
+        }
+        for node in 0..nodes.len() {
+            ends[node + 1] += ends[node];
+        }
+        patches.copy_starts = ends;
+        (patches, parts)
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Copies of nodes in all patches together.
+    pub(crate) fn copies(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Nodes of a patch, in ascending order.
+    #[inline(always)]
+    pub(crate) fn nodes(&self, patch: usize) -> &[u32] {
+        &self.nodes[self.starts[patch]..self.starts[patch + 1]]
+    }
+
+    /// Size of the stored numbers [bytes].
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+            + size_of_val(self.copies.as_slice())
+            + size_of_val(self.copy_starts.as_slice())
+    }
+
+    /// Reads the nodes of a patch from a nodal array.
+    #[inline(always)]
+    pub(crate) fn gather<T: Scalar>(&self, patch: usize, values: &[Vec3<T>]) -> PatchRows<T> {
+        let mut rows = [[T::ZERO; 4]; PATCH_NODES];
+        for (row, &node) in rows.iter_mut().zip(self.nodes(patch)) {
+            let value = values[node as usize];
+            *row = [value.x, value.y, value.z, T::ZERO];
+        }
+        rows
+    }
+
+    /// Lets `work` write the rows of each patch, `width` for each of its nodes.
+    pub(crate) fn each<T: Scalar>(
+        &self,
+        executor: &Executor,
+        rows: &mut [[T; 4]],
+        width: usize,
+        work: &(impl Fn(usize, &mut [[T; 4]]) + Sync),
+    ) {
+        let data = PerPatch { values: rows, starts: &self.starts, width };
+        executor.each(self.count(), data, &|patch, part: PerPatch<'_, [T; 4]>| work(patch, part.values));
+    }
+
+    /// Adds to each node of `out` the rows of its copies.
+    pub(crate) fn add_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
+        self.for_copies(executor, out, &|sum: &mut Vec3<T>, copy| {
+            let [x, y, z, _] = rows[copy];
+            *sum += Vec3::new(x, y, z);
+        });
+    }
+
+    /// Adds to each node of `out` the symmetric blocks of its copies: xx, yy, zz in one row, xy, xz, yz in the next.
+    pub(crate) fn add_up_blocks<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Mat3<T>]) {
+        self.for_copies(executor, out, &|sum: &mut Mat3<T>, copy| {
+            let ([xx, yy, zz, _], [xy, xz, yz, _]) = (rows[2 * copy], rows[2 * copy + 1]);
+            *sum += Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz });
+        });
+    }
+
+    /// Hands each copy of each node to `add`, in the order of the patches.
+    fn for_copies<V: Send>(&self, executor: &Executor, out: &mut [V], add: &(impl Fn(&mut V, usize) + Sync)) {
+        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
+        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, out: NodeBlocks<'_, V>| {
+            let starts = &self.copy_starts[block * NODE_BLOCK..];
+            for (sum, ends) in out.0.iter_mut().zip(starts.windows(2)) {
+                for &copy in &self.copies[ends[0] as usize..ends[1] as usize] {
+                    add(sum, copy as usize);
+                }
+            }
+        });
+    }
+}
+
+/// Values of the patches, patch after patch.
+pub(crate) struct PerPatch<'a, V> {
+    /// The values of all patches of this part.
+    pub(crate) values: &'a mut [V],
+    /// Where the items of each patch begin, counted from anywhere, and the end.
+    pub(crate) starts: &'a [usize],
+    /// Values of an item.
+    pub(crate) width: usize,
+}
+
+impl<V: Send> Divide for PerPatch<'_, V> {
+    fn divide(self, parts: usize) -> (Self, Self) {
+        let Self { values, starts, width } = self;
+        let (left, right) = values.split_at_mut((starts[parts] - starts[0]) * width);
+        (
+            Self { values: left, starts: &starts[..=parts], width },
+            Self { values: right, starts: &starts[parts..], width },
+        )
+    }
+}
