@@ -14,13 +14,22 @@ const THIN: f64 = 0.7;
 /// A cell that is stretched more than this stiffens.
 const STRETCHED: f64 = 1.2;
 
-/// What costs most, and why.
+/// What costs most, and why; where that is not the step itself, what costs most in that as well.
 pub(super) fn text(profile: &Profile) -> String {
     let costs = profile.recurring();
-    let Some(&(cost, time, _)) = costs.first() else { return "no step was made".into() };
+    let Some(&(largest, time, _)) = costs.first() else { return "no step was made".into() };
     let share = 100.0 * time / profile.of_a_step();
-    let lines = why(profile, cost);
-    format!("{}: {}, {share:.0} % of a step\n{}", heading("largest cost"), name(cost), lines.join("\n"))
+    let mut text = told("largest cost", profile, largest, &format!("{share:.0} % of all"));
+    let of_the_step = costs.iter().find(|(cost, ..)| matches!(cost, Cost::Stage(_)));
+    if let Some(&(cost, time, _)) = of_the_step.filter(|(cost, ..)| *cost != largest) {
+        let share = 100.0 * time / profile.of_the_stages();
+        text += &told("\n\nlargest cost of the step itself", profile, cost, &format!("{share:.0} % of it"));
+    }
+    text
+}
+
+fn told(what: &str, profile: &Profile, cost: Cost, share: &str) -> String {
+    format!("{}: {}, {share}\n{}", heading(what), name(cost), why(profile, cost).join("\n"))
 }
 
 fn why(profile: &Profile, cost: Cost) -> Vec<String> {
@@ -32,7 +41,7 @@ fn why(profile: &Profile, cost: Cost) -> Vec<String> {
                 .into(),
         ],
         Cost::Output | Cost::Loading | Cost::Building => vec![
-            "Frames are large: `--set output.interval=\"0.2 s\"` or so writes fewer, `--pictures 0` draws none.".into(),
+            "Files are written through to the disk, which waits: `--set output.interval='0.2 s'` writes fewer frames.".into(),
         ],
         Cost::Stage(stage) => match stage {
             Stage::Products(_) | Stage::LinearSolve => vec![format!(

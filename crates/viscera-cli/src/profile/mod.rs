@@ -23,8 +23,8 @@ use crate::run::recording::Recording;
 use crate::stopwatch::{Cost, Stopwatch};
 use crate::terminal;
 
-/// Pictures that a run takes unless it is told otherwise.
-const PICTURES: u64 = 3;
+/// Pictures are drawn when a run is over: they are no part of its pace.
+const PICTURES: u64 = 0;
 
 /// What a run with a clock came to.
 pub(crate) struct Profile {
@@ -144,6 +144,12 @@ impl Profile {
     /// Time of a step with all that goes with it [s].
     fn of_a_step(&self) -> f64 {
         self.recurring().iter().map(|(_, time, _)| time).sum()
+    }
+
+    /// Time of a step itself [s], without what is measured and written about it.
+    fn of_the_stages(&self) -> f64 {
+        let is_stage = |cost: &Cost| matches!(cost, Cost::Stage(_));
+        self.recurring().iter().filter(|(cost, ..)| is_stage(cost)).map(|(_, time, _)| time).sum()
     }
 
     fn is_implicit(&self) -> bool {

@@ -9,7 +9,7 @@ use crate::tables::{table, table_text};
 use crate::terminal::heading;
 use crate::units::with_prefix;
 
-/// Below this share of a step, costs are summed up in one line.
+/// Below this share of the step itself, costs are summed up in one line.
 const WORTH_A_LINE: f64 = 0.002;
 
 /// Everything that was measured.
@@ -32,7 +32,7 @@ pub(super) fn text(profile: &Profile) -> String {
     let mut table = table(&["stage", "ms per step", "share", "calls per step", "of real time"]);
     let mut rest = 0.0;
     for (cost, time, times) in profile.recurring() {
-        if time < WORTH_A_LINE * total {
+        if time < WORTH_A_LINE * profile.of_the_stages() {
             rest += time;
             continue;
         }
@@ -79,7 +79,7 @@ pub(super) fn name(cost: Cost) -> String {
         Cost::Loading => "loading".into(),
         Cost::Building => "meshes and models".into(),
         Cost::Observables => "observables".into(),
-        Cost::Output => "files and pictures".into(),
+        Cost::Output => "files".into(),
         Cost::Stage(stage) => match stage {
             Stage::Guard => "guard".into(),
             Stage::FrequencyBound => "frequency bound".into(),

@@ -113,7 +113,7 @@ fn a_folder_that_cannot_be_made_is_named_before_anything_is_computed() {
     desk.write("out/checkpoints-are-a-file/checkpoints", "a file");
     desk.viscera(&["run", "cube.toml", "--out", "out/checkpoints-are-a-file", "--checkpoint", "0.05"])
         .ends_with(2)
-        .complains("checkpoints-are-a-file/checkpoints");
+        .complains("out/checkpoints-are-a-file: results cannot be written there");
 }
 
 /// Each output in turn cannot be written, because a folder has its name: the message names it, and what came before it stands.
