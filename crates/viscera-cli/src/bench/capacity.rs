@@ -42,8 +42,7 @@ pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
     for pace in Pace::ALL {
         for threads in std::iter::once(1).chain(all) {
             let executor = Executor::threads(threads).map_err(Failure::problem)?;
-            let found =
-                largest(pace.step(), tolerance, |cells| pace.measure(cells, &executor, care, &mut sizing))?;
+            let found = largest(pace.step(), tolerance, |cells| pace.measure(cells, &executor, care, &mut sizing))?;
             table.add_row(row(pace, threads, found));
         }
     }
