@@ -16,11 +16,9 @@ use crate::terminal::say;
 
 /// How often the memory is told, over the whole time.
 const LINES: u32 = 30;
-/// Memory counts as grown when it is above that after the first tenth of the time by more than this share: pages that the
-/// system hands out late are a few per mille, and a leak of one number a step is more in an hour.
-const GROWTH: f64 = 0.02;
-/// The share of the time, or of the rounds if those are few, after which nothing new should be asked for.
-const SETTLING: f64 = 0.1;
+/// Memory counts as grown when its median over the last third of the rounds is above that over the first third by more than this
+/// share. Single samples waver by that much, as the system takes pages back and hands them out again: 15.3 to 16.6 MB were seen.
+const GROWTH: f64 = 0.05;
 
 /// Memory after a round.
 #[derive(Clone, Copy, Debug)]
@@ -81,17 +79,18 @@ fn soak_in<T: Precision>(arguments: &SoakArguments, open: &OpenScene, interrupt:
 /// Says how the memory went, and fails if it grew.
 fn judge(samples: &[Sample], steps: u64) -> Result<(), Failure> {
     let Some(last) = samples.last() else { return Ok(()) };
-    let settled = |sample: &&Sample| sample.time.as_secs_f64() > SETTLING * last.time.as_secs_f64();
-    let first = samples.iter().find(settled).unwrap_or(last);
-    let growth = last.resident as f64 / first.resident as f64 - 1.0;
+    // The first round brings what every later one uses again.
+    let settled = if samples.len() > 3 { &samples[1..] } else { samples };
+    let third = settled.len().div_ceil(3);
+    let (first, end) = (median(&settled[..third]), median(&settled[settled.len() - third..]));
+    let growth = end as f64 / first as f64 - 1.0;
     let what = format!(
-        "{} rounds, {} steps in {:.0} s; memory {} after {:.0} s, {} at the end: {:+.2} %",
+        "{} rounds, {} steps in {:.0} s; memory {} in the first third, {} in the last: {:+.2} %",
         samples.len(),
         grouped(steps as usize),
         last.time.as_secs_f64(),
-        megabytes(first.resident),
-        first.time.as_secs_f64(),
-        megabytes(last.resident),
+        megabytes(first),
+        megabytes(end),
         100.0 * growth
     );
     if growth > GROWTH {
@@ -99,6 +98,12 @@ fn judge(samples: &[Sample], steps: u64) -> Result<(), Failure> {
     }
     say(&format!("{what}\nevery round ended with the bits of the first one"));
     Ok(())
+}
+
+fn median(samples: &[Sample]) -> usize {
+    let mut sizes: Vec<usize> = samples.iter().map(|sample| sample.resident).collect();
+    sizes.sort_unstable();
+    sizes[sizes.len() / 2]
 }
 
 /// Memory of this program that is not swapped out [bytes].
@@ -123,9 +128,10 @@ mod tests {
 
     #[test]
     fn memory_that_grows_all_the_time_is_a_failure_and_a_start_that_settles_is_not() {
-        let leak = samples(|second| 20_000_000 + 10_000 * second as usize);
+        let leak = samples(|second| 20_000_000 + 50_000 * second as usize);
         let failure = judge(&leak, 1000).expect_err("it grows").to_string();
-        assert!(failure.contains("the memory grows by more than 2 %"), "{failure}");
-        assert!(judge(&samples(|second| if second < 5 { 10_000_000 } else { 20_000_000 }), 1000).is_ok());
+        assert!(failure.contains("the memory grows by more than 5 %"), "{failure}");
+        assert!(judge(&samples(|second| if second == 1 { 10_000_000 } else { 20_000_000 }), 1000).is_ok());
+        assert!(judge(&samples(|second| 15_300_000 + 130_000 * (second as usize * 7 % 11)), 1000).is_ok());
     }
 }

@@ -67,7 +67,7 @@ fn a_soak_tells_rounds_steps_and_memory_and_ends_well_where_that_does_not_grow()
     desk.viscera(&[&["bench", "soak", "liver-resection", "--for", "3 s"], &coarse[..]].concat())
         .ends_with(0)
         .says("liver-resection in rounds of 100 steps for 3 s")
-        .says("MB at the end")
+        .says("MB in the last: ")
         .says("every round ended with the bits of the first one");
     desk.viscera(&["bench", "soak", "--help"]).ends_with(0).says("[default: \"1 h\"]");
     desk.viscera(&["bench", "capacity", "--help"]).ends_with(0).says("--quick");
