@@ -63,7 +63,7 @@ pub(crate) fn profile(arguments: &ProfileArguments) -> Result<(), Failure> {
     terminal::say(&table::text(&profile));
     terminal::say(&format!("\n{}", advice::text(&profile)));
     if !arguments.no_trials && profile.ending == Ending::Complete {
-        terminal::say(&format!("\n{}", trial::text(&open, &profile, &interrupt)?));
+        terminal::say(&format!("\n{}", trial::text(&open, &interrupt)?));
     }
     match profile.ending {
         Ending::Complete => Ok(()),

@@ -8,7 +8,6 @@ use viscera_scene::file::{
     self, BodyFile, GenerateFile, IntegratorName, LawName, MeshFile, ModelName, SceneFile, SurfaceFile,
 };
 
-use super::Profile;
 use crate::built_in::OpenScene;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
@@ -29,8 +28,10 @@ struct Trial {
 }
 
 /// What the other settings came to.
-pub(super) fn text(open: &OpenScene, profile: &Profile, interrupt: &Interrupt) -> Result<String, Failure> {
+pub(super) fn text(open: &OpenScene, interrupt: &Interrupt) -> Result<String, Failure> {
     let mut rows = Vec::new();
+    // The scene as it is, measured as the trials are: without a clock on its stages, and with nothing between its steps.
+    let as_it_is = times(&open.scene, interrupt).unwrap_or_default();
     for trial in trials(&open.file()?) {
         if interrupt.is_asked() {
             break;
@@ -39,9 +40,10 @@ pub(super) fn text(open: &OpenScene, profile: &Profile, interrupt: &Interrupt) -
         let changed = trial.changes.iter().try_for_each(|(key, value)| scene.set(key, value));
         // Settings that do not go together with the scene's others are no advice.
         let Some(times) = changed.ok().and_then(|()| times(&scene, interrupt)) else { continue };
-        let (own, other) = (median(&profile.steps[..times.len()]), median(&times));
+        let steps = times.len().min(as_it_is.len());
+        let (own, other) = (median(&as_it_is[..steps]), median(&times[..steps]));
         if other < (1.0 - WORTH_TELLING) * own {
-            rows.push((own / other, other, times.len(), trial));
+            rows.push((own / other, other, steps, trial));
         }
     }
     if rows.is_empty() {
