@@ -16,8 +16,8 @@ pub(crate) use load::NodalLoads;
 pub(crate) use model_plan::{ModelPlan, Models};
 pub use removals::Removals;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
-pub(crate) use state::MotionBackup;
 pub use state::{BodyState, NodeMotion, PastState};
+pub(crate) use state::{Driven, MotionBackup};
 
 use crate::curve::Curve;
 use crate::math::Vec3;

@@ -1,5 +1,5 @@
 use super::{
-    Body, BodyError, BodyState, Guides, LoosePieces, ModelPlan, Models, MotionBackup, NodalLoads, NodeMotion,
+    Body, BodyError, BodyState, Driven, Guides, LoosePieces, ModelPlan, Models, MotionBackup, NodalLoads, NodeMotion,
     PastState, Removals,
 };
 use crate::curve::Curve;
@@ -42,6 +42,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) frequency: Box<dyn FrequencyBound<T>>,
     pub(crate) external_forces: Vec<Vec3<T>>,
     pub(crate) scratch: Scratch<T>,
+    /// Memory of explicit steps for the nodes that are not free.
+    pub(crate) driven: Vec<Driven<T>>,
     pub(crate) backup: MotionBackup<T>,
     pub(crate) pieces: Vec<u32>,
 }
@@ -129,6 +131,7 @@ impl<T: Scalar> SimulatedBody<T> {
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
+            driven: Vec::with_capacity(mesh.nodes().len()),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),

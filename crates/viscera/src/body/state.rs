@@ -21,6 +21,15 @@ pub enum NodeMotion {
     Retired,
 }
 
+/// A node that is not free, as it was before all nodes were moved as if they were: explicit steps move free nodes in whole
+/// registers, and put the few others right afterwards.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Driven<T> {
+    pub(crate) node: usize,
+    pub(crate) position: Vec3<T>,
+    pub(crate) velocity: Vec3<T>,
+}
+
 /// Everything about a body that changes with time; a copy of it is a snapshot of the body. As bytes it goes without the models,
 /// which follow from the removals.
 #[derive(Serialize, Deserialize)]

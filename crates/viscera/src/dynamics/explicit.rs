@@ -10,10 +10,12 @@
 //!
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
 
+use fearless_simd::dispatch;
+
 use super::Drive;
-use crate::body::{NodeMotion, SimulatedBody};
+use crate::body::{Driven, NodeMotion, SimulatedBody};
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, dispatch_level};
 use crate::model::Scratch;
 use crate::solver::Filter;
 use crate::stage::{Stage, Stages};
@@ -72,70 +74,84 @@ pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_
 
 /// First half: v_½ and x⁺, and driven nodes to where they must be.
 fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
-    let (step, half) = (T::from_f64(dt), T::from_f64(0.5 * dt));
-    for_nodes(body, &|body, node, position, velocity| {
-        if body.state.motions[node] == NodeMotion::Free {
-            let acceleration = acceleration(body, node) - *velocity * body.damping;
-            *velocity = acceleration.mul_add(half, *velocity);
-            *position = velocity.mul_add(step, *position);
-            return;
-        }
-        let (target, filter) = (drive.target(body, node, *position), body.free_directions(node));
-        match (target, filter) {
-            (Some(target), Filter::Held) => {
-                *velocity = (target - *position) / step;
-                *position = target;
-            }
-            _ => {
-                let acceleration = acceleration(body, node) - *velocity * body.damping;
-                *velocity = acceleration.mul_add(half, *velocity);
-                if let Some(target) = target {
-                    *velocity = filter.merge(*velocity, (target - *position) / step);
-                }
-                *position = velocity.mul_add(step, *position);
-            }
-        }
+    let (step, half, damping) = (T::from_f64(dt), T::from_f64(0.5 * dt), body.damping);
+    keep_driven(body);
+    for_blocks(body, &|x, v, accelerations| {
+        dispatch!(dispatch_level(), _simd => kick_and_drift_freely(x, v, accelerations, half, step, damping));
     });
+    for i in 0..body.driven.len() {
+        let Driven { node, position, .. } = body.driven[i];
+        let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
+        let Some(target) = target else { continue };
+        let velocity = filter.merge(body.state.velocities[node], (target - position) / step);
+        body.state.velocities[node] = velocity;
+        body.state.positions[node] = if filter == Filter::Held { target } else { velocity.mul_add(step, position) };
+    }
 }
 
 /// Second half: v⁺ from the forces at x⁺.
 fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
     let half = T::from_f64(0.5 * dt);
     let damped = T::ONE / (T::ONE + half * body.damping);
-    for_nodes(body, &|body, node, _, velocity| {
-        let kicked = || acceleration(body, node).mul_add(half, *velocity) * damped;
-        match body.state.motions[node] {
-            NodeMotion::Free => *velocity = kicked(),
-            _ => match body.free_directions(node) {
-                Filter::Held => {}
-                filter => *velocity = filter.merge(kicked(), *velocity),
-            },
-        }
+    keep_driven(body);
+    for_blocks(body, &|_, v, accelerations| {
+        dispatch!(dispatch_level(), _simd => kick_freely(v, accelerations, half, damped));
     });
+    for i in 0..body.driven.len() {
+        let Driven { node, velocity, .. } = body.driven[i];
+        body.state.velocities[node] = body.free_directions(node).merge(body.state.velocities[node], velocity);
+    }
 }
 
-/// (R − F)/m without damping [m/s²].
-#[inline]
-fn acceleration<T: Scalar>(body: &SimulatedBody<T>, node: usize) -> Vec3<T> {
-    (body.external_forces[node] - body.state.internal_forces[node]) * (T::ONE / body.state.masses[node])
+/// Remembers the nodes that are not free.
+fn keep_driven<T: Scalar>(body: &mut SimulatedBody<T>) {
+    let state = &body.state;
+    body.driven.clear();
+    let others = state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
+    let kept = |(node, _)| Driven { node, position: state.positions[node], velocity: state.velocities[node] };
+    body.driven.extend(others.map(kept));
 }
 
-/// Lets `work` change place and velocity of every node, on all threads.
-fn for_nodes<T: Scalar>(
+/// External forces, internal forces and masses of a block of nodes: what (R − F)/m comes from.
+type Accelerations<'a, T> = (&'a [Vec3<T>], &'a [Vec3<T>], &'a [T]);
+
+/// Lets `work` move blocks of nodes, on all threads.
+fn for_blocks<T: Scalar>(
     body: &mut SimulatedBody<T>,
-    work: &(impl Fn(&SimulatedBody<T>, usize, &mut Vec3<T>, &mut Vec3<T>) + Sync),
+    work: &(impl Fn(&mut [Vec3<T>], &mut [Vec3<T>], Accelerations<'_, T>) + Sync),
 ) {
-    let mut positions = std::mem::take(&mut body.state.positions);
-    let mut velocities = std::mem::take(&mut body.state.velocities);
-    let data = (NodeBlocks(&mut positions), NodeBlocks(&mut velocities));
-    let the_body = &*body;
-    the_body.scratch.executor.each(node_blocks(the_body.rest.len()), data, &|block, (x, v): Motion<'_, T>| {
-        for (i, (position, velocity)) in x.0.iter_mut().zip(v.0).enumerate() {
-            work(the_body, block * NODE_BLOCK + i, position, velocity);
-        }
-    });
-    (body.state.positions, body.state.velocities) = (positions, velocities);
+    let (state, external) = (&mut body.state, &body.external_forces);
+    let (internal, masses) = (&state.internal_forces, &state.masses);
+    let data = (NodeBlocks(&mut state.positions), NodeBlocks(&mut state.velocities));
+    let work = |block: usize, (NodeBlocks(x), NodeBlocks(v)): Motion<'_, T>| {
+        let nodes = block * NODE_BLOCK..block * NODE_BLOCK + x.len();
+        work(x, v, (&external[nodes.clone()], &internal[nodes.clone()], &masses[nodes]));
+    };
+    body.scratch.executor.each(node_blocks(masses.len()), data, &work);
 }
 
 /// Places and velocities.
 type Motion<'a, T> = (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>);
+
+#[inline(always)]
+fn kick_and_drift_freely<T: Scalar>(
+    x: &mut [Vec3<T>],
+    v: &mut [Vec3<T>],
+    (external, internal, masses): Accelerations<'_, T>,
+    half: T,
+    step: T,
+    damping: T,
+) {
+    for ((((x, v), &external), &internal), &mass) in x.iter_mut().zip(v).zip(external).zip(internal).zip(masses) {
+        let acceleration = (external - internal) * (T::ONE / mass) - *v * damping;
+        *v = acceleration.mul_add(half, *v);
+        *x = v.mul_add(step, *x);
+    }
+}
+
+#[inline(always)]
+fn kick_freely<T: Scalar>(v: &mut [Vec3<T>], (external, internal, masses): Accelerations<'_, T>, half: T, damped: T) {
+    for (((v, &external), &internal), &mass) in v.iter_mut().zip(external).zip(internal).zip(masses) {
+        *v = (external - internal).mul_add(half / mass, *v) * damped;
+    }
+}

@@ -45,10 +45,16 @@ impl<V: Copy> BlockTable<V> {
         &mut self.values[index]
     }
 
+    /// The entries of a row, column by column.
+    pub(crate) fn row_mut(&mut self, row: usize) -> impl Iterator<Item = &mut V> {
+        let start = self.index(row, 0);
+        self.values[start..].iter_mut().step_by(self.lanes).take(self.columns)
+    }
+
     /// Writes a row, from its first column on.
     pub(crate) fn set_row(&mut self, row: usize, values: impl IntoIterator<Item = V>) {
-        for (column, value) in values.into_iter().enumerate() {
-            *self.get_mut(row, column) = value;
+        for (entry, value) in self.row_mut(row).zip(values) {
+            *entry = value;
         }
     }
 

@@ -1,6 +1,7 @@
 //! Sums and products of nodal arrays, on all threads.
 //!
-//! Eight nodes at a time are as many numbers in a row as the compiler makes whole registers of.
+//! The compiler makes whole registers of plain loops; of sums only where it need not keep their order, so that those are kept
+//! for eight nodes apart.
 
 use fearless_simd::dispatch;
 
@@ -43,9 +44,7 @@ pub(crate) fn scale_and_add_masses<T: Scalar>(
 ) {
     let work = |block: usize, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
         let masses = &masses[block * NODE_BLOCK..];
-        for ((y, &x), &mass) in y.iter_mut().zip(x).zip(masses) {
-            *y = x.mul_add(mass, *y * s);
-        }
+        dispatch!(dispatch_level(), _simd => combine_masses_into(y, s, masses, x));
     };
     executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
 }
@@ -67,19 +66,20 @@ fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
 /// y ← s y + t x.
 #[inline(always)]
 fn combine_into<T: Scalar>(y: &mut [Vec3<T>], s: T, t: T, x: &[Vec3<T>]) {
-    let ((y, rest_of_y), (x, rest_of_x)) = (y.as_chunks_mut::<NODES>(), x.as_chunks::<NODES>());
-    for (y, x) in y.iter_mut().zip(x) {
-        let (mut sum, x) = (numbers(y), numbers(x));
-        for i in 0..NUMBERS {
-            sum[i] = x[i].mul_add(t, sum[i] * s);
-        }
-        *y = vectors(&sum);
-    }
-    for (y, &x) in rest_of_y.iter_mut().zip(rest_of_x) {
+    for (y, &x) in y.iter_mut().zip(x) {
         *y = x.mul_add(t, *y * s);
     }
 }
 
+/// y ← s y + m x.
+#[inline(always)]
+fn combine_masses_into<T: Scalar>(y: &mut [Vec3<T>], s: T, masses: &[T], x: &[Vec3<T>]) {
+    for ((y, &x), &mass) in y.iter_mut().zip(x).zip(masses) {
+        *y = x.mul_add(mass, *y * s);
+    }
+}
+
+/// The numbers of eight vectors.
 #[inline(always)]
 fn numbers<T: Scalar>(vectors: &[Vec3<T>; NODES]) -> [T; NUMBERS] {
     let mut numbers = [T::ZERO; NUMBERS];
@@ -89,13 +89,4 @@ fn numbers<T: Scalar>(vectors: &[Vec3<T>; NODES]) -> [T; NUMBERS] {
         numbers[3 * node + 2] = vectors[node].z;
     }
     numbers
-}
-
-#[inline(always)]
-fn vectors<T: Scalar>(numbers: &[T; NUMBERS]) -> [Vec3<T>; NODES] {
-    let mut vectors = [Vec3::ZERO; NODES];
-    for node in 0..NODES {
-        vectors[node] = Vec3::new(numbers[3 * node], numbers[3 * node + 1], numbers[3 * node + 2]);
-    }
-    vectors
 }

@@ -21,6 +21,12 @@ pub(crate) const PATCH_NODES: usize = 512;
 /// Numbers of the nodes of a patch, four to a node, so that lanes load and store whole rows.
 pub(crate) type PatchRows<T> = [[T; 4]; PATCH_NODES];
 
+/// Rows of no patch yet.
+#[inline(always)]
+pub(crate) fn no_rows<T: Scalar, const FIELDS: usize>() -> [PatchRows<T>; FIELDS] {
+    [[[T::ZERO; 4]; PATCH_NODES]; FIELDS]
+}
+
 /// The patches of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Patches {
@@ -82,15 +88,20 @@ impl Patches {
             + size_of_val(self.copy_starts.as_slice())
     }
 
-    /// Reads the nodes of a patch from a nodal array.
+    /// Reads the nodes of a patch from nodal arrays. The rows are the caller's, so that they are not moved about.
     #[inline(always)]
-    pub(crate) fn gather<T: Scalar>(&self, patch: usize, values: &[Vec3<T>]) -> PatchRows<T> {
-        let mut rows = [[T::ZERO; 4]; PATCH_NODES];
-        for (row, &node) in rows.iter_mut().zip(self.nodes(patch)) {
-            let value = values[node as usize];
-            *row = [value.x, value.y, value.z, T::ZERO];
+    pub(crate) fn gather<T: Scalar, const FIELDS: usize>(
+        &self,
+        patch: usize,
+        fields: &[&[Vec3<T>]; FIELDS],
+        rows: &mut [PatchRows<T>; FIELDS],
+    ) {
+        for (rows, values) in rows.iter_mut().zip(fields) {
+            for (row, &node) in rows.iter_mut().zip(self.nodes(patch)) {
+                let value = values[node as usize];
+                *row = [value.x, value.y, value.z, T::ZERO];
+            }
         }
-        rows
     }
 
     /// Lets `work` write the rows of each patch, `width` for each of its nodes.

@@ -1,7 +1,7 @@
 use fearless_simd::{Simd, dispatch};
 
 use super::fan::{Fan, fans};
-use super::{PATCH_NODES, PatchRows, Patches, PerPatch};
+use super::{PATCH_NODES, PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
@@ -19,7 +19,7 @@ pub(crate) struct TetFans {
     batch_starts: Vec<usize>,
     batches: Vec<Batch>,
     /// Nodes of the batches by their numbers within the patch: axis, then ring, each for all lanes.
-    nodes: Vec<u16>,
+    nodes: Vec<u32>,
     /// Where the slots of each patch begin, and the end.
     slot_starts: Vec<usize>,
     /// The cell of each row, for padding the one that it copies.
@@ -86,7 +86,7 @@ impl TetFans {
         self.batches.push(Batch { nodes: self.nodes.len(), slot: self.slots(), length });
         let fan = |lane: usize| fans.get(lane).unwrap_or(&fans[0]);
         for end in 0..2 {
-            self.nodes.extend((0..self.lanes).map(|lane| fan(lane).axis[end] as u16));
+            self.nodes.extend((0..self.lanes).map(|lane| fan(lane).axis[end]));
         }
         for place in 0..=length {
             self.nodes.extend((0..self.lanes).map(|lane| ring_node(fan(lane), place)));
@@ -156,8 +156,10 @@ impl TetFans {
     ) {
         let (executor, rows) = scratch.copies(self.copies());
         self.patches.each(executor, rows, 1, &|patch, rows| {
-            let fields = fields.map(|field| self.patches.gather(patch, field));
-            dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &fields, element, rows));
+            let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
+            self.patches.gather(patch, &fields, &mut places);
+            dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, &mut sums[0]));
+            rows.copy_from_slice(&sums[0][..rows.len()]);
         });
         self.patches.add_up(executor, rows, out);
     }
@@ -172,8 +174,10 @@ impl TetFans {
     ) {
         let (executor, rows) = scratch.copies(self.copies());
         self.patches.each(executor, rows, 1, &|patch, rows| {
-            let fields = fields.map(|field| self.patches.gather(patch, field));
-            self.scatter(baseline(), patch, &fields, element, rows);
+            let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
+            self.patches.gather(patch, &fields, &mut places);
+            self.scatter(baseline(), patch, &places, element, &mut sums[0]);
+            rows.copy_from_slice(&sums[0][..rows.len()]);
         });
         self.patches.add_up(executor, rows, out);
     }
@@ -185,13 +189,11 @@ impl TetFans {
         patch: usize,
         fields: &[PatchRows<T>; FIELDS],
         element: &impl Element<T, FIELDS>,
-        rows: &mut [[T; 4]],
+        sums: &mut PatchRows<T>,
     ) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
-        let sums = [[T::ZERO; 4]; PATCH_NODES];
         let mut scatter = Scatter { simd, element, sums, end: zero, ring: zero, carried: zero };
         self.walk(simd, patch, fields, &mut scatter);
-        rows.copy_from_slice(&scatter.sums[..rows.len()]);
     }
 
     /// Adds to `out` the blocks on the diagonal that `element` makes of the edges of each tetrahedron at `x`.
@@ -204,11 +206,15 @@ impl TetFans {
     ) {
         let (executor, rows) = scratch.copies(2 * self.copies());
         self.patches.each(executor, rows, 2, &|patch, rows| {
-            let fields = [self.patches.gather(patch, x)];
+            let (mut places, mut sums) = (no_rows(), no_rows());
+            self.patches.gather(patch, &[x], &mut places);
             if element.is_wide() {
-                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &fields, element, rows));
+                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places, element, &mut sums));
             } else {
-                self.scatter_blocks(baseline(), patch, &fields, element, rows);
+                self.scatter_blocks(baseline(), patch, &places, element, &mut sums);
+            }
+            for (node, pair) in rows.chunks_exact_mut(2).enumerate() {
+                (pair[0], pair[1]) = (sums[0][node], sums[1][node]);
             }
         });
         self.patches.add_up_blocks(executor, rows, out);
@@ -221,15 +227,11 @@ impl TetFans {
         patch: usize,
         fields: &[PatchRows<T>; 1],
         element: &impl Diagonal<T>,
-        rows: &mut [[T; 4]],
+        sums: &mut [PatchRows<T>; 2],
     ) {
         let zero = Sym3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
-        let sums = [[[T::ZERO; 4]; PATCH_NODES]; 2];
         let mut scatter = ScatterBlocks { simd, element, sums, origin: zero, end: zero, carried: zero };
         self.walk(simd, patch, fields, &mut scatter);
-        for (node, pair) in rows.chunks_exact_mut(2).enumerate() {
-            (pair[0], pair[1]) = (scatter.sums[0][node], scatter.sums[1][node]);
-        }
     }
 
     /// Fills the blocks of rows of `table` with what `record` keeps of each tetrahedron at `x`.
@@ -243,18 +245,20 @@ impl TetFans {
         let block = record.columns() * T::LANES;
         let data = PerPatch { values: table, starts: &self.slot_starts, width: block };
         executor.each(self.patches.count(), data, &|patch, part: PerPatch<'_, T>| {
-            let fields = [self.patches.gather(patch, x)];
+            let mut places = no_rows();
+            self.patches.gather(patch, &[x], &mut places);
             let first = self.slot_starts[patch];
             let mut keep = Keep { record, values: part.values, first, block };
-            dispatch!(dispatch_level(), simd => self.walk(simd, patch, &fields, &mut keep));
+            dispatch!(dispatch_level(), simd => self.walk(simd, patch, &places, &mut keep));
         });
     }
 
     /// The largest of what `measure` says of each tetrahedron at `x`, and 0 if there is none above.
     pub(crate) fn largest<T: Scalar>(&self, x: &[Vec3<T>], measure: &impl Measure<T>, executor: &Executor) -> T {
         let work = |patch: usize, (): ()| {
-            let fields = [self.patches.gather(patch, x)];
-            dispatch!(dispatch_level(), simd => self.largest_of(simd, patch, &fields, measure))
+            let mut places = no_rows();
+            self.patches.gather(patch, &[x], &mut places);
+            dispatch!(dispatch_level(), simd => self.largest_of(simd, patch, &places, measure))
         };
         executor.fold(self.patches.count(), (), &work, &Real::max).unwrap_or(T::ZERO)
     }
@@ -351,17 +355,17 @@ trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
     #[inline(always)]
     fn begin(&mut self) {}
     /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring.
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u16]);
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]);
     /// The batch has ended: nodes of its axis, and the last of the ring.
     #[inline(always)]
-    fn end(&mut self, _origin: &[u16], _end: &[u16], _last: &[u16]) {}
+    fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
 }
 
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
 struct Scatter<'a, T: Scalar, S: Simd, E> {
     simd: S,
     element: &'a E,
-    sums: PatchRows<T>,
+    sums: &'a mut PatchRows<T>,
     /// Force on the end of the axis.
     end: Vec3<T::Lanes<S>>,
     /// Sum of the forces on the ring: what is left to make them all zero acts on the origin.
@@ -378,20 +382,20 @@ impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, 
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u16]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]) {
         let [end, ring, next] = self.element.forces(simd, slot, edges).columns;
         let ring = self.carried + ring;
         self.end += end;
         self.ring += ring;
         self.carried = next;
-        add(ring, from, &mut self.sums);
+        add(ring, from, self.sums);
     }
 
     #[inline(always)]
-    fn end(&mut self, origin: &[u16], end: &[u16], last: &[u16]) {
-        add(self.carried, last, &mut self.sums);
-        add(self.end, end, &mut self.sums);
-        add(-(self.ring + self.carried + self.end), origin, &mut self.sums);
+    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
+        add(self.carried, last, self.sums);
+        add(self.end, end, self.sums);
+        add(-(self.ring + self.carried + self.end), origin, self.sums);
     }
 }
 
@@ -399,7 +403,7 @@ impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, 
 struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
     simd: S,
     element: &'a E,
-    sums: [PatchRows<T>; 2],
+    sums: &'a mut [PatchRows<T>; 2],
     origin: Sym3<T::Lanes<S>>,
     end: Sym3<T::Lanes<S>>,
     carried: Sym3<T::Lanes<S>>,
@@ -413,24 +417,24 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: &[u16]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: &[u32]) {
         let [origin, end, ring, next] = self.element.blocks(simd, slot, &edges[0]);
         self.origin = self.origin + origin;
         self.end = self.end + end;
-        add_block(self.carried + ring, from, &mut self.sums);
+        add_block(self.carried + ring, from, self.sums);
         self.carried = next;
     }
 
     #[inline(always)]
-    fn end(&mut self, origin: &[u16], end: &[u16], last: &[u16]) {
-        add_block(self.carried, last, &mut self.sums);
-        add_block(self.end, end, &mut self.sums);
-        add_block(self.origin, origin, &mut self.sums);
+    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
+        add_block(self.carried, last, self.sums);
+        add_block(self.end, end, self.sums);
+        add_block(self.origin, origin, self.sums);
     }
 }
 
 #[inline(always)]
-fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u16], sums: &mut [PatchRows<T>; 2]) {
+fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
     add(Vec3::new(block.xx, block.yy, block.zz), nodes, &mut sums[0]);
     add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
 }
@@ -445,7 +449,7 @@ struct Keep<'a, T, R> {
 
 impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u16]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
         let start = (slot - self.first) * self.block;
         self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
     }
@@ -459,7 +463,7 @@ struct Largest<'a, M, V> {
 
 impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u16]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
         self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
     }
 }
@@ -479,18 +483,18 @@ fn lanes_apart(fans: Vec<Fan>, lanes: usize) -> Vec<Fan> {
 }
 
 /// A node of a fan's ring; beyond the end the last two in turn, so that the padding is the last cell over and over.
-fn ring_node(fan: &Fan, place: usize) -> u16 {
+fn ring_node(fan: &Fan, place: usize) -> u32 {
     let last = fan.ring.len() - 1;
     let beyond = place.saturating_sub(last);
-    fan.ring[place.min(last) - beyond % 2] as u16
+    fan.ring[place.min(last) - beyond % 2]
 }
 
 /// Numbers of the nodes of all lanes, modulo the size of a patch: the compiler sees that they are good.
 #[inline(always)]
-fn indices(nodes: &[u16], lanes: usize) -> [u32; MAX_LANES] {
+fn indices(nodes: &[u32], lanes: usize) -> [u32; MAX_LANES] {
     let mut indices = [0; MAX_LANES];
     for lane in 0..lanes {
-        indices[lane] = u32::from(nodes[lane]) % PATCH_NODES as u32;
+        indices[lane] = nodes[lane] % PATCH_NODES as u32;
     }
     indices
 }
@@ -499,7 +503,7 @@ fn indices(nodes: &[u16], lanes: usize) -> [u32; MAX_LANES] {
 fn gather<T: Scalar, S: Simd, const FIELDS: usize>(
     simd: S,
     fields: &[PatchRows<T>; FIELDS],
-    nodes: &[u16],
+    nodes: &[u32],
 ) -> [Vec3<T::Lanes<S>>; FIELDS] {
     let indices = indices(nodes, T::LANES);
     let mut places = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); FIELDS];
@@ -519,7 +523,7 @@ fn minus<R: Real, const FIELDS: usize>(mut places: [Vec3<R>; FIELDS], origin: &[
 }
 
 #[inline(always)]
-fn add<T: Scalar, S: Simd, L: Lanes<T, S>>(force: Vec3<L>, nodes: &[u16], sums: &mut PatchRows<T>) {
+fn add<T: Scalar, S: Simd, L: Lanes<T, S>>(force: Vec3<L>, nodes: &[u32], sums: &mut PatchRows<T>) {
     let indices = indices(nodes, T::LANES);
     L::scatter_add(force.to_array(), &indices[..T::LANES], sums);
 }

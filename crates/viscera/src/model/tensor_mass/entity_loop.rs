@@ -77,10 +77,13 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     /// Takes a tetrahedron off the entity. The last one leaves exact zeros behind, not rounding errors.
     pub(crate) fn subtract(&mut self, entity: usize, tensors: &TetTensors, at: [usize; NODES]) {
         self.uses[entity] -= 1;
-        let last = self.uses[entity] == 0;
-        for (column, value) in E::stored(tensors, at).into_iter().take(E::COLUMNS).enumerate() {
-            let stored = self.stored.get_mut(entity, column);
-            *stored = if last { T::ZERO } else { T::from_f64(stored.to_f64() - value) };
+        let row = self.stored.row_mut(entity);
+        if self.uses[entity] == 0 {
+            row.for_each(|stored| *stored = T::ZERO);
+        } else {
+            for (stored, value) in row.zip(E::stored(tensors, at)) {
+                *stored = T::from_f64(stored.to_f64() - value);
+            }
         }
     }
 
