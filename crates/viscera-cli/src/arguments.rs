@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::bench::arguments::BenchCommand;
 use crate::mesh::arguments::MeshCommand;
+use crate::units::time;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -31,6 +33,15 @@ pub(crate) enum Command {
     /// Say what a scene holds, what it takes to run it, and what is wrong or odd with it; runs nothing.
     #[command(after_help = EXIT_CODES)]
     Check(SceneArguments),
+    /// Run a scene with a clock on every stage: where the time goes, against the time of a frame, and what would lower it.
+    #[command(after_help = EXIT_CODES)]
+    Profile(ProfileArguments),
+    /// Measure what this machine holds: the largest organ in real time, the longest run.
+    #[command(after_help = EXIT_CODES)]
+    Bench {
+        #[command(subcommand)]
+        command: BenchCommand,
+    },
     /// Look at meshes, convert and make them.
     #[command(after_help = EXIT_CODES)]
     Mesh {
@@ -69,9 +80,29 @@ pub(crate) struct RunArguments {
     /// How many pictures to take, evenly over the run; by default start, middle and end.
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) pictures: u64,
+    /// Keep a checkpoint after every so much simulated time, such as "0.5 s" (a bare number is seconds). A run that is killed,
+    /// or finds the disk full, goes on from the last one with --resume.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub(crate) checkpoint: Option<f64>,
+    /// Go on from the last checkpoint in the folder for results, to the same bits as a run that was never stopped; from the
+    /// start where there is none yet. Keeps checkpoints as before, unless --checkpoint says otherwise.
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Say nothing but errors.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ProfileArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// The time that a frame may take, such as "16.7 ms" (a bare number is seconds).
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "16.7 ms")]
+    pub(crate) frame: f64,
+    /// Measure where the time goes, and try no other settings.
+    #[arg(long)]
+    pub(crate) no_trials: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,13 +1,18 @@
 //! The `viscera` program.
 
 mod arguments;
+mod bench;
 mod built_in;
 mod check;
 mod failure;
+mod instruction_set;
 mod interrupt;
 mod mesh;
+mod profile;
 mod run;
 mod scenes;
+mod stopwatch;
+mod tables;
 mod terminal;
 mod units;
 
@@ -18,7 +23,8 @@ use clap::{CommandFactory, Parser};
 use failure::Failure;
 
 fn main() -> ExitCode {
-    match carry_out(Arguments::parse().command) {
+    // What is piped into a file has to be there as a whole: a full disk is a failure, whatever else went well.
+    match carry_out(Arguments::parse().command).and_then(|()| terminal::all_was_said()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             terminal::complain(&failure.to_string());
@@ -31,6 +37,8 @@ fn carry_out(command: Option<Command>) -> Result<(), Failure> {
     match command {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Profile(arguments)) => profile::profile(&arguments),
+        Some(Command::Bench { command }) => bench::carry_out(&command),
         Some(Command::Mesh { command }) => mesh::carry_out(&command),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
         Some(Command::Schema) => {

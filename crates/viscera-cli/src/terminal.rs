@@ -2,7 +2,10 @@
 //!
 //! Colour is left out where the stream is no terminal, or `NO_COLOR` is set (`anstream` sees to both).
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::sync::OnceLock;
+
+use crate::failure::Failure;
 
 const BOLD: &str = "\x1b[1m";
 const RED: &str = "\x1b[1;31m";
@@ -10,9 +13,29 @@ const YELLOW: &str = "\x1b[1;33m";
 const BLUE: &str = "\x1b[34m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Writes a result. A reader that has gone away, as behind `| head`, is no error.
+/// The first error of stdout.
+static UNSAID: OnceLock<String> = OnceLock::new();
+
+/// Writes a result. A reader that has gone away, as behind `| head`, is no error; other errors are kept for [`all_was_said`].
 pub(crate) fn say(text: &str) {
-    let _ = writeln!(anstream::stdout(), "{}", text.trim_end());
+    let mut out = anstream::stdout();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            // The first one counts.
+            let _ = UNSAID.set(error.to_string());
+        }
+        _ => {}
+    }
+}
+
+/// Fails if a result could not be written, as to a file on a full disk.
+pub(crate) fn all_was_said() -> Result<(), Failure> {
+    match UNSAID.get() {
+        Some(error) => Err(Failure::problem(format!(
+            "what this command says could not be written: {error}; make room, or send it to another place"
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Writes what is wrong, or what a person should know.

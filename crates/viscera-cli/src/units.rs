@@ -1,11 +1,21 @@
 //! Quantities as a person types them: a number is SI, a unit may follow.
 
 use viscera_scene::file::LengthUnit;
-use viscera_scene::unit::{Dimension, LENGTH};
+use viscera_scene::unit::{Dimension, LENGTH, TIME};
 
 /// A positive length, such as `0.3`, `30cm` or `"30 cm"` [m].
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     positive(text, &LENGTH)
+}
+
+/// A positive time, such as `0.5`, `500ms` or `"10 min"` [s].
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    // Hours are for runs: no scene lasts one, and its units stay as they are.
+    let hours = text.trim().strip_suffix('h').and_then(|number| number.trim().parse::<f64>().ok());
+    match hours {
+        Some(hours) => positive(&format!("{}", 3600.0 * hours), &TIME),
+        None => positive(text, &TIME),
+    }
 }
 
 fn positive(text: &str, dimension: &Dimension) -> Result<f64, String> {
@@ -51,6 +61,13 @@ mod tests {
     fn a_quantity_is_shown_with_three_digits_and_the_prefix_that_fits() {
         let shown = [0.01234, -5.0, 0.0, 999.6, 1e-12, 123.4].map(|value| with_prefix(value, "N"));
         assert_eq!(shown, ["12.3 mN", "-5.00 N", "0 N", "1.00 kN", "1.0e-12 N", "123 N"]);
+    }
+
+    #[test]
+    fn a_time_is_in_seconds_or_says_its_unit() {
+        assert_eq!(["0.5", "500 ms", "10 min", "1 h", "1.5h"].map(time), [0.5, 0.5, 600.0, 3600.0, 5400.0].map(Ok));
+        assert!(time("0").unwrap_err().contains("must be positive"));
+        assert!(time("5 m").unwrap_err().contains("found the length"));
     }
 
     #[test]

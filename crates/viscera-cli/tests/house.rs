@@ -9,6 +9,7 @@ const ORDER: &[&str] = &[
     "math",
     "executor",
     "curve",
+    "stage",
     "mesh",
     "material",
     "model",

@@ -74,8 +74,73 @@ impl Scene {
             .map_err(|error| self.document.error_at(&[], error.to_string(), "").into())
     }
 
+    /// Every file that the scene names, meshes and tables, where it is looked for; in the order of the keys.
+    ///
+    /// # Errors
+    /// All that [`check`](Self::check) finds.
+    pub fn files(&self) -> Result<Vec<PathBuf>, SceneErrors> {
+        let file = self.check()?;
+        let tree = serde_json::to_value(file).map_err(|error| SceneError::without_place(error.to_string(), ""))?;
+        let mut files = Vec::new();
+        files_in(&tree, &mut |file| files.push(self.path(file)));
+        Ok(files)
+    }
+
     /// A file that the scene names.
     pub(crate) fn path(&self, file: &Path) -> PathBuf {
         self.folder.join(file)
+    }
+}
+
+/// Paths stand under the keys `file` and `surface`, wherever these are.
+fn files_in(tree: &serde_json::Value, found: &mut impl FnMut(&Path)) {
+    match tree {
+        serde_json::Value::Object(entries) => {
+            for (key, value) in entries {
+                match (key.as_str(), value) {
+                    ("file" | "surface", serde_json::Value::String(path)) => found(Path::new(path)),
+                    _ => files_in(value, found),
+                }
+            }
+        }
+        serde_json::Value::Array(items) => items.iter().for_each(|item| files_in(item, found)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_meshes_surfaces_curves_and_fibres_are_found() {
+        let text = r#"
+            duration = 1
+            [body.a]
+            mesh = { file = "a.msh" }
+            density = 1000
+            law = { kind = "transverse-linear", young = 1, poisson = 0.3, fibre = { file = "fibres.csv", young = 2 } }
+            [body.b]
+            mesh = { surface = "b.stl", edge = 0.01 }
+            density = 1000
+            law = { kind = "linear", young = 1, poisson = 0.3 }
+            [instrument.tool]
+            kind = "cautery"
+            radius = 0.01
+            path = { file = "path.csv" }
+        "#;
+        let files = Scene::parse(text, "here").and_then(|scene| scene.files()).map_err(|error| error.to_string());
+        let names = ["a.msh", "fibres.csv", "b.stl", "path.csv"].map(|name| Path::new("here").join(name));
+        assert_eq!(
+            files.map(|mut files| {
+                files.sort();
+                files
+            }),
+            Ok({
+                let mut names = names.to_vec();
+                names.sort();
+                names
+            })
+        );
     }
 }

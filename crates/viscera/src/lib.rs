@@ -16,4 +16,5 @@ pub mod math;
 pub mod mesh;
 pub mod model;
 pub mod solver;
+pub mod stage;
 pub mod world;

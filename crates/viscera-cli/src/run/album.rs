@@ -28,6 +28,16 @@ impl Album {
         Self { wanted, steps, moments: Vec::new() }
     }
 
+    /// The album of a run that goes on, with the moments that it has kept.
+    pub(super) fn going_on(wanted: u64, steps: u64, moments: Vec<Moment>) -> Self {
+        Self { wanted, steps, moments }
+    }
+
+    /// The moments that are kept.
+    pub(super) fn moments(&self) -> &[Moment] {
+        &self.moments
+    }
+
     /// Keeps this moment if a picture is due.
     pub(super) fn look<T: Scalar>(&mut self, built: &BuiltScene<T>, step: u64) {
         let taken = self.moments.len() as u64;
@@ -43,7 +53,7 @@ impl Album {
 
     /// Draws all pictures, and one of the last moment if the run ended early. Gives the names of the files.
     pub(super) fn write<T: Scalar>(
-        mut self,
+        &mut self,
         folder: &Folder,
         built: &BuiltScene<T>,
         step: u64,

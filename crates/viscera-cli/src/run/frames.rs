@@ -1,5 +1,8 @@
 //! The series for ParaView: one VTU for each body and frame, one PVD over all of them.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use viscera::body::SimulatedBody;
 use viscera::math::{Scalar, Vec3};
 use viscera::mesh::{Point, VolumeMesh};
@@ -8,16 +11,17 @@ use viscera_scene::BuiltScene;
 use viscera_scene::file::Precision;
 
 use super::folder::Folder;
+use crate::failure::Failure;
 
 /// The frames of a run.
 pub(super) struct Frames {
     series: TimeSeries,
     /// Where the files of each body go, without number and ending.
-    stems: Vec<std::path::PathBuf>,
+    stems: Vec<PathBuf>,
     interval: f64,
     precision: Precision,
-    count: usize,
-    last: Option<f64>,
+    /// When the frames were that are written [s].
+    times: Vec<f64>,
 }
 
 impl Frames {
@@ -28,41 +32,75 @@ impl Frames {
             stems: names.iter().map(|name| folder.file("frames").join(name)).collect(),
             interval: built.file.output.interval.0,
             precision: built.file.precision,
-            count: 0,
-            last: None,
+            times: Vec::new(),
         }
+    }
+
+    /// The frames of a run that goes on after those of these times.
+    pub(super) fn going_on<T: Scalar>(
+        folder: &Folder,
+        built: &BuiltScene<T>,
+        times: Vec<f64>,
+    ) -> Result<Self, Failure> {
+        let mut frames = Self::new(folder, built);
+        let moments: Vec<_> = times.iter().enumerate().map(|(number, &time)| (time, frames.files(number))).collect();
+        if let Some(missing) = moments.iter().flat_map(|(_, files)| files).find(|file| !file.is_file()) {
+            return Err(Failure::input(format!(
+                "{}: this frame was written before the checkpoint and is gone; put it back, or run without --resume to begin anew",
+                missing.display()
+            )));
+        }
+        frames.series = TimeSeries::going_on(folder.file("bodies.pvd"), moments).map_err(Failure::problem)?;
+        frames.times = times;
+        Ok(frames)
     }
 
     /// How many frames were written.
     pub(super) fn count(&self) -> usize {
-        self.count
+        self.times.len()
+    }
+
+    /// When the frames were that are written [s].
+    pub(super) fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The files of a frame, one for each body.
+    fn files(&self, number: usize) -> Vec<PathBuf> {
+        let file = |stem: &PathBuf| {
+            let mut file = stem.clone().into_os_string();
+            file.push(format!("-{number:06}.vtu"));
+            PathBuf::from(file)
+        };
+        self.stems.iter().map(file).collect()
     }
 
     /// Whether the time of the next frame has come. An interval below the step takes every step.
     pub(super) fn is_due<T: Scalar>(&self, built: &BuiltScene<T>) -> bool {
         // Frame n belongs to n intervals; a thousandth of a step is for rounding.
-        let due = self.count as f64 * self.interval;
-        self.last.is_none_or(|last| last < built.world.time())
+        let due = self.count() as f64 * self.interval;
+        self.times.last().is_none_or(|&last| last < built.world.time())
             && built.world.time() >= due - 1e-3 * built.world.config().step
     }
 
     /// Whether the present moment is written.
     pub(super) fn is_up_to_date<T: Scalar>(&self, built: &BuiltScene<T>) -> bool {
-        self.last == Some(built.world.time())
+        self.times.last() == Some(&built.world.time())
     }
 
     /// Writes the present moment.
     pub(super) fn write<T: Scalar>(&mut self, built: &BuiltScene<T>) -> Result<(), WriteError> {
-        let mut files = Vec::new();
-        for (&id, stem) in built.bodies.values().zip(&self.stems) {
-            let mut file = stem.clone().into_os_string();
-            file.push(format!("-{:06}.vtu", self.count));
-            write_body(built.world.body(id), self.precision, file.as_ref())?;
-            files.push(file);
-        }
+        let files = self.files(self.count());
         let time = built.world.time();
-        self.series.add_parts(time, &files)?;
-        (self.count, self.last) = (self.count + 1, Some(time));
+        let mut bodies = built.bodies.values().zip(&files);
+        bodies
+            .try_for_each(|(&id, file)| write_body(built.world.body(id), self.precision, file))
+            .and_then(|()| self.series.add_parts(time, &files))
+            .inspect_err(|_| {
+                // A frame is whole or not there; of those of its files that were not written there is nothing to remove.
+                files.iter().for_each(|file| drop(fs::remove_file(file)));
+            })?;
+        self.times.push(time);
         Ok(())
     }
 }
@@ -86,11 +124,7 @@ fn file_names<'a>(bodies: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
 }
 
-fn write_body<T: Scalar>(
-    body: &SimulatedBody<T>,
-    precision: Precision,
-    file: &std::path::Path,
-) -> Result<(), WriteError> {
+fn write_body<T: Scalar>(body: &SimulatedBody<T>, precision: Precision, file: &Path) -> Result<(), WriteError> {
     let state = body.state();
     let rest = body.mesh().nodes();
     let positions: Vec<Point> = state.positions.iter().map(|place| place.cast()).collect();

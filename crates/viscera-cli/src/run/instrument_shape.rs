@@ -18,7 +18,7 @@ pub(super) fn solids(tool: &ToolPose, towards: Point, size: f64) -> Vec<Solid> {
     let hand = tool.tip + towards * (0.6 * size);
     let rod = |from: Point, to: Point, start: f64, end: f64| Tool::tapered(from.to_array(), to.to_array(), start, end);
     let shaft = rod(neck, hand, radius, radius);
-    match tool.kind {
+    match &*tool.kind {
         "cautery" => {
             let colour = if tool.active { Colour::new(255, 150, 60) } else { Colour::STEEL };
             let sleeve = rod(neck, hand, radius, radius).colour(Colour::new(60, 64, 70));

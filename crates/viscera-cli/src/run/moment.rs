@@ -1,11 +1,13 @@
 //! What a picture shows of one moment: a copy, because the camera can only be set when all moments are known.
 
+use serde::{Deserialize, Serialize};
 use viscera::body::NodeMotion;
 use viscera::math::Scalar;
 use viscera::mesh::Point;
 use viscera_scene::BuiltScene;
 
 /// All bodies and instruments at one moment.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Moment {
     pub(super) step: u64,
     pub(super) time: f64,
@@ -16,6 +18,7 @@ pub(super) struct Moment {
 }
 
 /// The surface of a body.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Skin {
     pub(super) nodes: Vec<Point>,
     pub(super) triangles: Vec<[u32; 3]>,
@@ -26,8 +29,9 @@ pub(super) struct Skin {
 }
 
 /// An instrument, where it is.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ToolPose {
-    pub(super) kind: &'static str,
+    pub(super) kind: String,
     pub(super) tip: Point,
     pub(super) reach: f64,
     pub(super) active: bool,
@@ -39,7 +43,7 @@ impl Moment {
         let time = world.time();
         let bodies = || built.bodies.values().map(|&id| world.body(id));
         let tools = built.instruments.values().map(|&id| world.instrument(id)).map(|instrument| ToolPose {
-            kind: instrument.kind(),
+            kind: instrument.kind().to_owned(),
             tip: instrument.path().at(time),
             reach: instrument.reach(),
             active: instrument.is_active(time),

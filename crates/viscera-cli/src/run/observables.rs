@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
 use viscera::math::{Scalar, Vec3};
 use viscera::world::{BodyObservables, InstrumentObservables};
 use viscera_io::write::{Table, WriteError, write_csv};
@@ -19,6 +20,14 @@ pub(super) struct Measured {
     pub(super) instruments: Vec<InstrumentObservables>,
 }
 
+/// The rows of the table, as a checkpoint keeps them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Kept {
+    rows: Vec<f64>,
+    pending: Option<Vec<f64>>,
+    written_rows: usize,
+}
+
 /// The table that grows.
 pub(super) struct Observables {
     file: PathBuf,
@@ -28,6 +37,8 @@ pub(super) struct Observables {
     stride: u64,
     /// The row of the last moment, where it is not in the table yet.
     pending: Option<Vec<f64>>,
+    /// Whether the step that was measured last has a row.
+    is_due: bool,
     written_rows: usize,
 }
 
@@ -90,8 +101,37 @@ impl Observables {
             last: Measured::default(),
             stride: built.steps().div_ceil(MOST_ROWS),
             pending: None,
+            is_due: false,
             written_rows: 0,
         }
+    }
+
+    /// The table of a run that goes on with these rows in it, so many of them in the file; the file is written with just these.
+    pub(super) fn going_on<T: Scalar>(
+        folder: &Folder,
+        built: &mut BuiltScene<T>,
+        kept: Kept,
+    ) -> Result<Self, WriteError> {
+        let mut observables = Self::new(folder, built);
+        for row in kept.rows.chunks(observables.table.header().len()) {
+            observables.table.push(row)?;
+        }
+        observables.pending = kept.pending;
+        observables.write()?;
+        observables.written_rows = kept.written_rows;
+        Ok(observables)
+    }
+
+    /// What a checkpoint has to keep.
+    pub(super) fn kept(&self) -> Kept {
+        let rows = self.table.rows().flatten().copied().collect();
+        Kept { rows, pending: self.pending.clone(), written_rows: self.written_rows }
+    }
+
+    /// Rows in the file, and the time of the last one [s].
+    pub(super) fn written(&self) -> Option<(usize, f64)> {
+        let last = self.table.rows().nth(self.written_rows.checked_sub(1)?)?;
+        Some((self.written_rows, last[0]))
     }
 
     /// What was measured last.
@@ -99,20 +139,19 @@ impl Observables {
         &self.last
     }
 
-    /// Measures the moment after `step` steps, the last of `substeps` sub-steps. The file is written anew whenever it has
-    /// grown by a quarter, so that a run that is killed leaves most of it and a long one does not write the same rows again
-    /// and again.
-    pub(super) fn observe<T: Scalar>(
-        &mut self,
-        built: &mut BuiltScene<T>,
-        step: u64,
-        substeps: u32,
-    ) -> Result<(), WriteError> {
+    /// Measures the moment after `step` steps, the last of `substeps` sub-steps.
+    pub(super) fn measure<T: Scalar>(&mut self, built: &mut BuiltScene<T>, step: u64, substeps: u32) {
         self.last = measure(built);
         let mut row = vec![built.world.time(), f64::from(substeps)];
         row.extend(self.last.columns().into_iter().flatten().map(|(_, value)| value));
         self.pending = Some(row);
-        if step.is_multiple_of(self.stride) {
+        self.is_due = step.is_multiple_of(self.stride);
+    }
+
+    /// Takes what was measured into the table, where its step has a row. The file is written anew whenever it has grown by a
+    /// quarter, so that a run that is killed leaves most of it and a long one does not write the same rows again and again.
+    pub(super) fn write_if_due(&mut self) -> Result<(), WriteError> {
+        if std::mem::take(&mut self.is_due) {
             self.take_pending()?;
             if 4 * self.table.row_count() > 5 * self.written_rows {
                 self.write()?;
@@ -133,8 +172,9 @@ impl Observables {
 
     /// Writes all rows.
     fn write(&mut self) -> Result<(), WriteError> {
+        write_csv(&self.file, &self.table)?;
         self.written_rows = self.table.row_count();
-        write_csv(&self.file, &self.table)
+        Ok(())
     }
 }
 

@@ -14,8 +14,9 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    pub(super) fn new(steps: u64, quiet: bool) -> Self {
-        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+    /// A bar that begins after `done` of `steps` steps.
+    pub(super) fn new(done: u64, steps: u64, quiet: bool) -> Self {
+        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new(steps).with_position(done) };
         // The template is fixed: should a later indicatif refuse it, its own default serves as well.
         if let Ok(style) = ProgressStyle::with_template("{bar:24.red/dim} {percent:>3} %  {msg}") {
             bar.set_style(style.progress_chars("━━─"));

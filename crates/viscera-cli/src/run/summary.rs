@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use viscera_io::write::{WriteError, write_atomically};
 use viscera_scene::file::Precision;
 
@@ -11,7 +11,7 @@ use super::folder::Folder;
 
 /// What a run came to. Every name carries its unit.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Summary {
+pub(crate) struct Summary {
     pub(super) program: String,
     pub(super) scene: String,
     pub(super) title: Option<String>,
@@ -56,7 +56,7 @@ pub(super) struct Summary {
 }
 
 /// What the solver of implicit steps did over the run. Of several bodies, the one that took most counts in each step.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct ImplicitResult {
     pub(super) newton_iterations: u64,
     pub(super) linear_iterations: u64,

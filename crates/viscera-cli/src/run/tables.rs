@@ -1,9 +1,9 @@
 //! The summary on the screen.
 
-use comfy_table::{CellAlignment, Table, presets};
 use viscera_io::grouped;
 
 use super::summary::{BodyResult, Summary};
+use crate::tables::{table, table_text};
 use crate::terminal::heading;
 use crate::units::with_prefix;
 
@@ -20,29 +20,6 @@ pub(super) fn tables(summary: &Summary) -> String {
     let (folder, files) = &summary.files;
     parts.push(format!("{}: {}", folder.display(), files.join(", ")));
     parts.join("\n\n")
-}
-
-/// The text of a table, its head standing out. The head is marked last: escape codes would count as letters of a column.
-fn text(table: &Table) -> String {
-    let text = table.trim_fmt();
-    match text.split_once('\n') {
-        Some((head, rows)) => format!("{}\n{rows}", heading(head)),
-        None => text,
-    }
-}
-
-/// A table without frames, numbers to the right.
-fn table(head: &[&str]) -> Table {
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING);
-    table.set_header(head);
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    for column in table.column_iter_mut() {
-        column.set_padding((0, 2));
-    }
-    table
 }
 
 fn bodies(bodies: &[BodyResult]) -> String {
@@ -72,7 +49,7 @@ fn bodies(bodies: &[BodyResult]) -> String {
         ]);
         table.add_row(row);
     }
-    text(&table)
+    table_text(&table)
 }
 
 /// Bodies whose names are `ROW-COLUMN`, as in `linear-2F`, side by side: one row for each law, one column for each load.
@@ -98,7 +75,7 @@ fn comparison(bodies: &[BodyResult]) -> Option<String> {
             columns.iter().map(|column| of(column).map_or_else(String::new, |body| percent(body.volume_variation)));
         table.add_row([row.to_owned()].into_iter().chain(values).collect::<Vec<_>>());
     }
-    Some(text(&table))
+    Some(table_text(&table))
 }
 
 fn instruments(summary: &Summary) -> String {
@@ -114,7 +91,7 @@ fn instruments(summary: &Summary) -> String {
             or_nothing(instrument.held_nodes.to_string()),
         ]);
     }
-    text(&table)
+    table_text(&table)
 }
 
 fn speed(summary: &Summary) -> String {

@@ -1,5 +1,6 @@
 //! What is counted while a run goes: extremes, and what the solver did.
 
+use serde::{Deserialize, Serialize};
 use viscera::math::Scalar;
 use viscera::world::{BodyObservables, StepReport};
 use viscera_scene::BuiltScene;
@@ -9,6 +10,7 @@ use super::observables::Measured;
 use super::summary::{BodyResult, ImplicitResult, InstrumentResult, Summary};
 
 /// Extremes over the run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Tally {
     scene: String,
     stable_step_at_start: f64,
@@ -24,6 +26,7 @@ pub(super) struct Tally {
 }
 
 /// Extremes of a body.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct BodyTally {
     /// The one farthest from zero.
     volume_variation: f64,
@@ -119,7 +122,7 @@ impl Tally {
 
     /// The summary of all.
     pub(super) fn summary<T: Scalar>(
-        self,
+        &self,
         built: &BuiltScene<T>,
         ending: &Ending,
         computing_time: f64,
@@ -177,7 +180,7 @@ impl Tally {
         };
         Summary {
             program: concat!("viscera ", env!("CARGO_PKG_VERSION")).to_owned(),
-            scene: self.scene,
+            scene: self.scene.clone(),
             title: built.file.title.clone(),
             interrupted: *ending == Ending::Interrupted,
             failure,

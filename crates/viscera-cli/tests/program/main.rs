@@ -1,6 +1,9 @@
 //! The program as a person meets it: started in a folder, with arguments, read by its text, its files and its exit code.
 
+mod checkpoints;
+mod full_disks;
 mod interruption;
+mod measuring;
 mod meshes;
 mod messages;
 mod results;
@@ -34,7 +37,9 @@ impl Desk {
     }
 
     fn write(&self, name: &str, text: impl AsRef<[u8]>) {
-        fs::write(self.path(name), text).expect("a file in the temporary folder");
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder in the temporary folder");
+        fs::write(path, text).expect("a file in the temporary folder");
     }
 
     fn read(&self, name: &str) -> String {

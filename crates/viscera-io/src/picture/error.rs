@@ -47,7 +47,9 @@ pub enum PictureError {
         found: usize,
     },
     /// The image could not be written.
-    #[error("cannot write the picture {path}: {source}; check the folder and the free space")]
+    #[error(
+        "{path}: the picture cannot be written: {source}; check that the folder is there, may be written to and has room"
+    )]
     Write {
         /// The file.
         path: String,

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::PictureError;
+use crate::write::{WriteError, write_atomically};
 
 /// A drawn picture: sRGB, 8 bits per channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,12 +47,9 @@ impl Image {
         let path = path.as_ref();
         let mut bytes = Vec::new();
         self.write_png(&mut bytes)?;
-        let mut aside = path.as_os_str().to_owned();
-        aside.push(".part");
-        std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path)).map_err(|source| {
-            // The first failure is the one to report; the file aside may not even exist.
-            let _ = std::fs::remove_file(&aside);
-            PictureError::Write { path: path.display().to_string(), source }
+        write_atomically(path, |out| out.write_all(&bytes)).map_err(|error| match error {
+            WriteError::Unwritable { path, source } => PictureError::Write { path: path.display().to_string(), source },
+            other => PictureError::Write { path: path.display().to_string(), source: std::io::Error::other(other) },
         })
     }
 }

@@ -21,6 +21,23 @@ impl TimeSeries {
         Self { path: path.into(), moments: Vec::new() }
     }
 
+    /// A series that goes on from moments whose files are there already, one for each part; the collection is written with
+    /// just these.
+    ///
+    /// # Errors
+    /// As [`add`](Self::add).
+    pub fn going_on(
+        path: impl Into<PathBuf>,
+        moments: impl IntoIterator<Item = (f64, Vec<PathBuf>)>,
+    ) -> Result<Self, WriteError> {
+        let mut series = Self::new(path);
+        for (time, files) in moments {
+            series.note(time, &files)?;
+        }
+        series.write_collection()?;
+        Ok(series)
+    }
+
     /// Writes the next moment: `name.pvd` gets `name-000000.vtu`, `name-000001.vtu` and so on, in its own folder.
     ///
     /// # Errors
@@ -46,10 +63,19 @@ impl TimeSeries {
     /// # Errors
     /// As [`add`](Self::add).
     pub fn add_parts(&mut self, time: f64, files: &[impl AsRef<Path>]) -> Result<(), WriteError> {
+        self.note(time, files)?;
+        self.write_collection()
+    }
+
+    fn note(&mut self, time: f64, files: &[impl AsRef<Path>]) -> Result<(), WriteError> {
         for (part, file) in files.iter().enumerate() {
             let file = self.relative(file.as_ref())?;
             self.moments.push((time, part, file));
         }
+        Ok(())
+    }
+
+    fn write_collection(&self) -> Result<(), WriteError> {
         write_atomically(&self.path, |out| {
             writeln!(out, "<?xml version=\"1.0\"?>")?;
             writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>")?;

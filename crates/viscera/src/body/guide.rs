@@ -89,6 +89,11 @@ impl Guides {
         Some(number as u32)
     }
 
+    /// Whether there is a guide of this number.
+    pub(crate) fn has(&self, guide: u32) -> bool {
+        (guide as usize) < self.guides.len()
+    }
+
     /// The directions that are left to the forces.
     pub(crate) fn filter<T: Scalar>(&self, guide: u32) -> Filter<T> {
         match self.guides[guide as usize].directions[..] {

@@ -4,6 +4,8 @@ mod deformation;
 mod error;
 mod guide;
 mod load;
+mod model_plan;
+mod removals;
 mod simulated;
 mod state;
 
@@ -11,6 +13,8 @@ pub use error::BodyError;
 pub(crate) use guide::Guides;
 pub use load::Load;
 pub(crate) use load::NodalLoads;
+pub(crate) use model_plan::{ModelPlan, Models};
+pub use removals::Removals;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
 pub use state::{BodyState, NodeMotion, PastState};
 pub(crate) use state::{Driven, MotionBackup};

@@ -1,10 +1,14 @@
-use super::{Body, BodyError, BodyState, Driven, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
+use super::{
+    Body, BodyError, BodyState, Driven, Guides, LoosePieces, ModelPlan, Models, MotionBackup, NodalLoads, NodeMotion,
+    PastState, Removals,
+};
 use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
 use crate::model::{ModelKind, Precision, Scratch};
 use crate::solver::Filter;
+use crate::stage::{Stage, Stages};
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -16,6 +20,10 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) corner_masses: Vec<f64>,
     /// Rest volumes of the cells [m³].
     pub(crate) cell_volumes: Vec<f64>,
+    /// What the models are built from.
+    pub(crate) plan: ModelPlan,
+    /// Tells the body apart from others, see [`fingerprint`].
+    pub(crate) fingerprint: u32,
     pub(crate) model: ModelKind,
     pub(crate) law: &'static str,
     /// Damping rate γ_i/m_i [1/s].
@@ -81,12 +89,11 @@ impl<T: Scalar> SimulatedBody<T> {
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
-        let mut models = vec![T::build_model(recipe.as_ref(), &mesh).map_err(model_error)?];
-        if keep_volume != 0.0 {
-            let VolumeMesh::Tet(tets) = &mesh else { return Err(BodyError::KeepVolumeOnHexahedra { body: body() }) };
-            models.push(T::build_volume_penalty(tets, keep_volume).map_err(model_error)?);
+        let plan = ModelPlan { recipe, density, keep_volume };
+        let Models { forces: models, frequency } = plan.build(&mesh).map_err(model_error)?;
+        if keep_volume != 0.0 && matches!(mesh, VolumeMesh::Hex(_)) {
+            return Err(BodyError::KeepVolumeOnHexahedra { body: body() });
         }
-        let frequency = T::build_frequency_bound(recipe.as_ref(), &mesh, &density, keep_volume).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
@@ -105,7 +112,7 @@ impl<T: Scalar> SimulatedBody<T> {
         let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| region_error(purpose)(source))?;
 
         let cell_volumes = cell_volumes(&mesh);
-        let density_of = |cell: usize| density[if density.len() == 1 { 0 } else { cell }];
+        let density_of = |cell: usize| plan.density[if plan.density.len() == 1 { 0 } else { cell }];
         let corners = mesh.cell(0).len() as f64;
         let corner_masses: Vec<f64> =
             cell_volumes.iter().enumerate().map(|(cell, volume)| density_of(cell) * volume / corners).collect();
@@ -115,8 +122,9 @@ impl<T: Scalar> SimulatedBody<T> {
         };
         let state = initial_state(&name, &mesh, &corner_masses, motions, models)?;
         Ok(Self {
-            model: recipe.kind(),
-            law: recipe.tissue().kind().name(),
+            fingerprint: fingerprint(&plan, &mesh, &corner_masses),
+            model: plan.recipe.kind(),
+            law: plan.recipe.tissue().kind().name(),
             damping: T::from_f64(damping),
             stiffness_damping: T::from_f64(stiffness_damping),
             rest: state.positions.clone(),
@@ -127,6 +135,7 @@ impl<T: Scalar> SimulatedBody<T> {
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             boundary: Boundary::new(&mesh),
+            plan,
             name,
             mesh,
             corner_masses,
@@ -218,14 +227,16 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 
     /// Brings the internal forces up to date with positions and cells.
-    pub(crate) fn update_internal_forces(&mut self) {
+    pub(crate) fn update_internal_forces(&mut self, stages: Stages) {
         let state = &mut self.state;
         if std::mem::replace(&mut state.forces_are_current, true) {
             return;
         }
         state.internal_forces.fill(Vec3::ZERO);
         for model in &state.models {
-            model.add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
+            stages.run(Stage::Forces(model.name()), || {
+                model.add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
+            });
         }
     }
 
@@ -285,6 +296,23 @@ fn mark(
     Ok(())
 }
 
+/// A checksum of the rest shape, the masses, the law and the model: bodies that differ in one of these have, but for one in four
+/// billion, others.
+fn fingerprint(plan: &ModelPlan, mesh: &VolumeMesh, corner_masses: &[f64]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    let ModelPlan { recipe, keep_volume, .. } = plan;
+    // How a recipe shows itself holds every setting and every modulus, down to the last digit.
+    hasher.update(format!("{recipe:?}").as_bytes());
+    let places = mesh.nodes().iter().flat_map(|node| node.to_array());
+    for number in places.chain(corner_masses.iter().copied()).chain([*keep_volume]) {
+        hasher.update(&number.to_bits().to_le_bytes());
+    }
+    for cell in 0..mesh.cell_count() {
+        mesh.cell(cell).iter().for_each(|node| hasher.update(&node.to_le_bytes()));
+    }
+    hasher.finalize()
+}
+
 /// Rest volumes [m³].
 fn cell_volumes(mesh: &VolumeMesh) -> Vec<f64> {
     match mesh {
@@ -320,6 +348,7 @@ fn initial_state<T: Scalar>(
         masses: masses.into_iter().map(T::from_f64).collect(),
         removed: vec![false; mesh.cell_count()],
         removed_count: 0,
+        removals: Removals::for_cells(mesh.cell_count()),
         cells_at_node,
         models,
         forces_are_current: false,

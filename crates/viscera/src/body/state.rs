@@ -1,8 +1,11 @@
+use serde::{Deserialize, Serialize};
+
+use super::Removals;
 use crate::math::{Scalar, Vec3};
 use crate::model::ForceModel;
 
 /// How a node moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NodeMotion {
     /// By the forces on it.
     Free,
@@ -27,7 +30,10 @@ pub(crate) struct Driven<T> {
     pub(crate) velocity: Vec3<T>,
 }
 
-/// Everything about a body that changes with time; a copy of it is a snapshot of the body.
+/// Everything about a body that changes with time; a copy of it is a snapshot of the body. As bytes it goes without the models,
+/// which follow from the removals.
+#[derive(Serialize, Deserialize)]
+#[serde(bound(serialize = "T: Serialize", deserialize = "T: Deserialize<'de>"))]
 pub struct BodyState<T: Scalar> {
     /// Positions [m].
     pub positions: Vec<Vec3<T>>,
@@ -45,9 +51,12 @@ pub struct BodyState<T: Scalar> {
     pub removed: Vec<bool>,
     /// How many cells are removed.
     pub removed_count: usize,
+    /// The removed cells in the order in which they went.
+    pub removals: Removals,
     /// How many cells still meet at each node.
     pub cells_at_node: Vec<u32>,
     /// Force models, the body's own first, then the volume penalty where there is one.
+    #[serde(skip)]
     pub models: Vec<Box<dyn ForceModel<T>>>,
     /// Whether the internal forces belong to the positions and the cells that are left.
     pub forces_are_current: bool,
@@ -58,7 +67,7 @@ pub struct BodyState<T: Scalar> {
 }
 
 /// Where a body was before the last step. Of no size unless the scheme asks for it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PastState<T> {
     /// Positions [m].
     pub positions: Vec<Vec3<T>>,
@@ -100,6 +109,7 @@ impl<T: Scalar> Clone for BodyState<T> {
             masses: self.masses.clone(),
             removed: self.removed.clone(),
             removed_count: self.removed_count,
+            removals: self.removals.clone(),
             cells_at_node: self.cells_at_node.clone(),
             models: self.models.iter().map(|model| model.clone_box()).collect(),
             forces_are_current: self.forces_are_current,

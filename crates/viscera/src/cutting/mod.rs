@@ -40,6 +40,7 @@ impl<T: Scalar> SimulatedBody<T> {
             }
         }
         state.removed_count += cells.len();
+        state.removals.push(cells);
         for model in &mut state.models {
             model.remove(cells);
         }

@@ -18,6 +18,7 @@ use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch_level};
 use crate::model::Scratch;
 use crate::solver::Filter;
+use crate::stage::{Stage, Stages};
 
 /// Share of the stability limit 2/ω_max that automatic sub-steps use: room for the tissue to stiffen within a step.
 const SAFETY: f64 = 0.9;
@@ -39,15 +40,36 @@ impl<T: Scalar> SimulatedBody<T> {
         let measure = || self.frequency.squared_frequency(positions, &mut Scratch::new(positions.len()));
         stable_step(self.state.squared_frequency.unwrap_or_else(measure))
     }
+
+    /// The cell that sets the stable step as the body is now; none in a body that does not vibrate.
+    ///
+    /// Found by halves: where the bound falls when some of the cells are taken out, it is one of them.
+    pub fn stiffest_cell(&self) -> Option<usize> {
+        let positions = &self.state.positions;
+        let mut scratch = Scratch::new(positions.len());
+        let mut rest = self.frequency.clone_box();
+        let bound = rest.squared_frequency(positions, &mut scratch);
+        let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
+        let mut cells: Vec<u32> = left.map(|cell| cell as u32).collect();
+        while cells.len() > 1 && bound > 0.0 {
+            let others = cells.split_off(cells.len() / 2);
+            let mut without = rest.clone_box();
+            without.remove(&cells);
+            if without.squared_frequency(positions, &mut scratch) == bound {
+                (rest, cells) = (without, others);
+            }
+        }
+        cells.first().filter(|_| bound > 0.0).map(|&cell| cell as usize)
+    }
 }
 
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
-pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
-    kick_and_drift(body, dt, drive);
+pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
+    stages.run(Stage::KickAndDrift, || kick_and_drift(body, dt, drive));
     body.state.positions_changed();
-    body.update_internal_forces();
-    body.update_external_forces(drive.end, drive.gravity);
-    kick(body, dt);
+    body.update_internal_forces(stages);
+    stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
+    stages.run(Stage::KickAndDrift, || kick(body, dt));
 }
 
 /// First half: v_½ and x⁺, and driven nodes to where they must be.

@@ -1,9 +1,11 @@
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
+use serde::{Deserialize, Serialize};
+
 use super::{Mat3, Real, Scalar};
 
 /// A vector of three components.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[repr(C)]
 pub struct Vec3<R> {
     /// First component.

@@ -1,3 +1,6 @@
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
 use super::frequency::FrequencyBound;
 use super::{ForceModel, ModelError, ModelRecipe, VolumePenalty};
 use crate::math::Scalar;
@@ -6,7 +9,7 @@ use crate::mesh::{TetMesh, VolumeMesh};
 /// The two precisions that a world can be simulated in, `f32` and `f64`, each with its way to the kernels.
 ///
 /// Kernels are compiled here, for both, and not again in every crate that builds a world: that took four times as long.
-pub trait Precision: Scalar {
+pub trait Precision: Scalar + Serialize + DeserializeOwned {
     /// Builds a force model.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ mod step_implicit;
 pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
 pub use observables::{BodyObservables, InstrumentObservables};
-pub use snapshot::Snapshot;
+pub use snapshot::{Snapshot, SnapshotError};
 pub use step::StepReport;
 
 use crate::body::{Body, SimulatedBody};
@@ -99,6 +99,11 @@ impl<T: Scalar> World<T> {
     /// Settings of the world.
     pub fn config(&self) -> &WorldConfig {
         &self.config
+    }
+
+    /// Steps taken since the beginning.
+    pub fn steps(&self) -> u64 {
+        self.steps
     }
 
     /// Time [s].

@@ -1,14 +1,17 @@
+use serde::{Deserialize, Serialize};
+
 use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::instrument::holding_force;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{TetQuality, VolumeMesh, scaled_jacobian};
+use crate::stage::Stages;
 
 /// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
 const REST_RATIO: f64 = 1e-8;
 
 /// Numbers about a body, in double precision whatever the world computes in.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyObservables {
     /// ½ Σ m v² [J].
     pub kinetic_energy: f64,
@@ -49,7 +52,7 @@ pub struct BodyObservables {
 }
 
 /// Numbers about an instrument.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InstrumentObservables {
     /// Where its tip is [m].
     pub tip: Vec3<f64>,
@@ -85,7 +88,7 @@ impl<T: Scalar> World<T> {
     fn bring_forces_up_to_date(&mut self) {
         let (time, gravity) = (self.time(), Vec3::from(self.config.gravity).cast());
         for body in &mut self.bodies {
-            body.update_internal_forces();
+            body.update_internal_forces(Stages::unobserved());
             body.update_external_forces(time, gravity);
         }
     }

@@ -7,6 +7,7 @@ use crate::dynamics::{Drive, explicit};
 use crate::executor::Executor;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
+use crate::stage::{Stage, StageObserver, Stages};
 
 /// The most sub-steps of one step.
 pub(super) const MAX_SUBSTEPS: f64 = 1e5;
@@ -53,19 +54,35 @@ impl<T: Scalar> World<T> {
     /// # Errors
     /// As [`World::step`].
     pub fn step_on(&mut self, executor: &Executor) -> Result<StepReport, StepError> {
+        self.step_among(executor, Stages::unobserved())
+    }
+
+    /// The same, with the same bits, and `observer` is told when the stages of the step begin and end.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    pub fn step_observed(
+        &mut self,
+        executor: &Executor,
+        observer: &dyn StageObserver,
+    ) -> Result<StepReport, StepError> {
+        self.step_among(executor, Stages::observed_by(observer))
+    }
+
+    fn step_among(&mut self, executor: &Executor, stages: Stages) -> Result<StepReport, StepError> {
         let cells: usize = self.bodies.iter().map(|body| body.mesh.cell_count()).sum();
         let executor = if cells < WORTH_THREADS { Executor::serial() } else { executor.clone() };
         for body in &mut self.bodies {
             body.scratch.executor = executor.clone();
         }
-        executor.enter(|| self.step_once())
+        executor.enter(|| self.step_once(stages))
     }
 
-    fn step_once(&mut self) -> Result<StepReport, StepError> {
+    fn step_once(&mut self, stages: Stages) -> Result<StepReport, StepError> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
-        self.keep();
-        let Motion { substeps, retries, implicit } = self.move_bodies(&span).inspect_err(|_| self.undo())?;
-        let removed_cells = self.cut(&span);
+        stages.run(Stage::Guard, || self.keep());
+        let Motion { substeps, retries, implicit } = self.move_bodies(&span, stages).inspect_err(|_| self.undo())?;
+        let removed_cells = stages.run(Stage::Cutting, || self.cut(&span));
         self.steps += 1;
         Ok(StepReport { time: span.to, substeps, retries, removed_cells, implicit })
     }
@@ -86,26 +103,26 @@ impl<T: Scalar> World<T> {
     }
 
     /// Moves the bodies over the step.
-    fn move_bodies(&mut self, span: &Span) -> Result<Motion, StepError> {
+    fn move_bodies(&mut self, span: &Span, stages: Stages) -> Result<Motion, StepError> {
         match self.config.integrator {
-            Integrator::Explicit(substep) => self.move_explicitly(span, substep),
-            Integrator::Implicit(settings) => self.move_implicitly(span, &settings),
+            Integrator::Explicit(substep) => self.move_explicitly(span, substep, stages),
+            Integrator::Implicit(settings) => self.move_implicitly(span, &settings, stages),
         }
     }
 
     /// Moves the bodies with as many sub-steps as it takes.
-    fn move_explicitly(&mut self, span: &Span, substep: Substep) -> Result<Motion, StepError> {
-        let mut fastest = self.fastest();
+    fn move_explicitly(&mut self, span: &Span, substep: Substep, stages: Stages) -> Result<Motion, StepError> {
+        let mut fastest = stages.run(Stage::FrequencyBound, || self.fastest());
         for retries in 0..=MAX_RETRIES {
             let substeps = match self.plan_substeps(substep, fastest) {
                 // What an attempt that ran away says of stiffness means nothing.
                 Err(StepError::TooStiff { .. }) if retries > 0 => return Err(self.diverged()),
                 plan => plan?,
             };
-            self.grip(span);
-            self.advance(span, substeps);
-            let finite = self.bodies.iter().all(|body| body.state.is_finite());
-            let at_end = if finite { self.fastest() } else { fastest };
+            stages.run(Stage::Instruments, || self.grip(span));
+            self.advance(span, substeps, stages);
+            let finite = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.state.is_finite()));
+            let at_end = if finite { stages.run(Stage::FrequencyBound, || self.fastest()) } else { fastest };
             if finite && self.config.step / f64::from(substeps) <= explicit::stable_step(at_end.squared_frequency) {
                 return Ok(Motion { substeps, retries, implicit: None });
             }
@@ -162,19 +179,19 @@ impl<T: Scalar> World<T> {
     }
 
     /// Moves all bodies by equal sub-steps over the step.
-    fn advance(&mut self, span: &Span, substeps: u32) {
+    fn advance(&mut self, span: &Span, substeps: u32, stages: Stages) {
         let dt = self.config.step / f64::from(substeps);
         let gravity = Vec3::from(self.config.gravity).cast();
         for body in &mut self.bodies {
-            body.update_internal_forces();
-            body.update_external_forces(span.from, gravity);
+            body.update_internal_forces(stages);
+            stages.run(Stage::Loads, || body.update_external_forces(span.from, gravity));
         }
         for substep in 1..=substeps {
             let end = span.from + (span.to - span.from) * (f64::from(substep) / f64::from(substeps));
-            self.move_tips(end);
+            stages.run(Stage::Instruments, || self.move_tips(end));
             let drive = Drive { end, tips: &self.tips, gravity };
             for body in &mut self.bodies {
-                explicit::advance(body, dt, &drive);
+                explicit::advance(body, dt, &drive, stages);
             }
         }
     }

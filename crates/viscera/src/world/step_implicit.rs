@@ -4,24 +4,34 @@ use crate::dynamics::Drive;
 use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Newton};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
+use crate::stage::{Stage, Stages};
 
 impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported; a full solve that did not balance
     /// the forces is an error.
-    pub(super) fn move_implicitly(&mut self, span: &Span, settings: &Implicit) -> Result<Motion, StepError> {
-        self.grip(span);
-        self.move_tips(span.to);
+    pub(super) fn move_implicitly(
+        &mut self,
+        span: &Span,
+        settings: &Implicit,
+        stages: Stages,
+    ) -> Result<Motion, StepError> {
+        stages.run(Stage::Instruments, || {
+            self.grip(span);
+            self.move_tips(span.to);
+        });
         let drive = Drive { end: span.to, tips: &self.tips, gravity: Vec3::from(self.config.gravity).cast() };
         let mut report = ImplicitReport::NOTHING;
         let mut failed = None;
         for (number, (body, memory)) in self.bodies.iter_mut().zip(&mut self.implicit).enumerate() {
-            let own = implicit::advance(body, memory, settings, span.from, self.config.step, &drive);
+            let own = stages.run(Stage::Newton, || {
+                implicit::advance(body, memory, settings, span.from, self.config.step, &drive, stages)
+            });
             if !own.converged && settings.newton != Newton::Linearised {
                 failed = failed.or(Some((number, own)));
             }
             report = report.worst(own);
         }
-        if !self.bodies.iter().all(|body| body.state.is_finite()) {
+        if !stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.state.is_finite())) {
             self.undo();
             return Err(self.diverged());
         }

@@ -18,4 +18,6 @@ mod threads;
 mod world_invariance;
 mod world_refusal;
 mod world_snapshot;
+mod world_snapshot_bytes;
 mod world_stable_step;
+mod world_stages;

@@ -3,6 +3,7 @@
 use super::Scheme;
 use super::step::Step;
 use crate::math::{Scalar, Vec3};
+use crate::stage::Stage;
 
 /// Norms of the forces on free nodes [N].
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +17,8 @@ pub(super) struct Balance {
 impl<T: Scalar> Step<'_, T> {
     /// What the forces at the beginning lack to balance: mass times acceleration.
     pub(super) fn balance_at_start(&mut self) {
-        self.body.update_internal_forces();
-        self.body.update_external_forces(self.from, self.drive.gravity);
+        self.body.update_internal_forces(self.stages);
+        self.update_external_forces(self.from);
         self.memory.nodal.copy_from_slice(&self.memory.velocities);
         self.find_damping();
         let (state, memory) = (&self.body.state, &mut *self.memory);
@@ -45,10 +46,10 @@ impl<T: Scalar> Step<'_, T> {
         if self.settings.scheme == Scheme::EnergyMomentum {
             self.find_mean_forces();
         } else {
-            self.body.update_internal_forces();
+            self.body.update_internal_forces(self.stages);
         }
         let time = self.from + self.numbers.place * (self.drive.end - self.from);
-        self.body.update_external_forces(time, self.drive.gravity);
+        self.update_external_forces(time);
         self.find_velocities(place);
         self.find_damping();
         self.find_lack()
@@ -63,8 +64,14 @@ impl<T: Scalar> Step<'_, T> {
         let state = &mut self.body.state;
         state.internal_forces.fill(Vec3::ZERO);
         for model in state.models.iter().filter_map(|model| model.mean_forces()) {
-            model.add_mean_forces(&memory.start, &memory.nodal, &mut self.body.scratch, &mut state.internal_forces);
+            self.stages.run(Stage::Forces("mean-forces"), || {
+                model.add_mean_forces(&memory.start, &memory.nodal, &mut self.body.scratch, &mut state.internal_forces);
+            });
         }
+    }
+
+    fn update_external_forces(&mut self, time: f64) {
+        self.stages.run(Stage::Loads, || self.body.update_external_forces(time, self.drive.gravity));
     }
 
     /// v_θ = (1 − θ) v + θ v⁺, into `nodal`.
@@ -84,7 +91,9 @@ impl<T: Scalar> Step<'_, T> {
         memory.damping.fill(Vec3::ZERO);
         if self.body.stiffness_damping > T::ZERO {
             for model in &state.models {
-                model.add_product(&state.positions, &memory.nodal, &mut self.body.scratch, &mut memory.damping);
+                self.stages.run(Stage::Products(model.name()), || {
+                    model.add_product(&state.positions, &memory.nodal, &mut self.body.scratch, &mut memory.damping);
+                });
             }
         }
         for node in 0..memory.damping.len() {

@@ -6,6 +6,7 @@ use super::tangent::Tangent;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 use crate::solver::{BlockJacobi, BlockMatrix, Ending, Problem};
+use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
 const ROUNDINGS: f64 = 8.0;
@@ -25,9 +26,11 @@ impl<T: Scalar> Step<'_, T> {
     /// Prepares the models for products at the positions, once for all of them.
     pub(super) fn linearize(&mut self) {
         if !std::mem::replace(&mut self.is_linearized, true) {
-            for model in &self.body.state.models {
-                model.linearize(&self.body.state.positions, &mut self.body.scratch);
-            }
+            self.stages.run(Stage::Linearisation, || {
+                for model in &self.body.state.models {
+                    model.linearize(&self.body.state.positions, &mut self.body.scratch);
+                }
+            });
         }
     }
 
@@ -42,24 +45,27 @@ impl<T: Scalar> Step<'_, T> {
         for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
             *mass = nodal * mass_factor;
         }
-        memory.preconditioner.clear();
-        match &mut memory.matrix {
-            Some(matrix) => {
-                matrix.clear();
-                let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix };
-                for model in &state.models {
-                    model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+        let rounding = self.stages.run(Stage::Preconditioner, || {
+            memory.preconditioner.clear();
+            match &mut memory.matrix {
+                Some(matrix) => {
+                    matrix.clear();
+                    let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix };
+                    for model in &state.models {
+                        model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
+                    }
+                }
+                None => {
+                    let blocks = memory.preconditioner.blocks_mut();
+                    for model in &state.models {
+                        model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
+                    }
                 }
             }
-            None => {
-                let blocks = memory.preconditioner.blocks_mut();
-                for model in &state.models {
-                    model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
-                }
-            }
-        }
-        let rounding = rounding(memory, &state.positions);
-        memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
+            let rounding = rounding(memory, &state.positions);
+            memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
+            rounding
+        });
         let executor = self.body.scratch.executor.clone();
         let mut tangent = Tangent {
             models: &state.models,
@@ -68,6 +74,7 @@ impl<T: Scalar> Step<'_, T> {
             assembled: memory.matrix.as_mut(),
             masses: &memory.masses,
             stiffness,
+            stages: self.stages,
         };
         let problem = Problem {
             rhs: &memory.lack,
@@ -77,13 +84,15 @@ impl<T: Scalar> Step<'_, T> {
             executor: &executor,
         };
         let stop = self.settings.linear;
-        let report = memory.conjugate_gradient.solve(
-            &mut tangent,
-            &mut memory.preconditioner,
-            &problem,
-            stop,
-            &mut memory.correction,
-        );
+        let report = self.stages.run(Stage::LinearSolve, || {
+            memory.conjugate_gradient.solve(
+                &mut tangent,
+                &mut memory.preconditioner,
+                &problem,
+                stop,
+                &mut memory.correction,
+            )
+        });
         Solve {
             iterations: report.iterations,
             residual: report.residual,

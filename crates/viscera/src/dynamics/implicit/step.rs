@@ -5,6 +5,7 @@ use crate::body::SimulatedBody;
 use crate::dynamics::Drive;
 use crate::math::{Scalar, Vec3};
 use crate::solver::Filter;
+use crate::stage::Stages;
 
 /// Advances a body, in memory of its own, from time `from` [s] by `dt` [s] to `drive.end`.
 pub fn advance<T: Scalar>(
@@ -14,9 +15,10 @@ pub fn advance<T: Scalar>(
     from: f64,
     dt: f64,
     drive: &Drive<'_, T>,
+    stages: Stages,
 ) -> ImplicitReport {
     let numbers = settings.scheme.numbers(body.state.past.is_known);
-    let mut step = Step { body, memory, settings, numbers, from, dt, drive, is_linearized: false };
+    let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages, is_linearized: false };
     step.begin();
     let report = match settings.newton {
         Newton::Linearised => step.solve_linearised(),
@@ -35,6 +37,7 @@ pub(super) struct Step<'a, T: Scalar> {
     pub(super) from: f64,
     pub(super) dt: f64,
     pub(super) drive: &'a Drive<'a, T>,
+    pub(super) stages: Stages<'a>,
     /// Whether the models are prepared for products at the positions.
     pub(super) is_linearized: bool,
 }

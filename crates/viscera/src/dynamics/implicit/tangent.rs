@@ -1,6 +1,7 @@
 use crate::math::{Scalar, Vec3};
 use crate::model::{ForceModel, Scratch};
 use crate::solver::{BlockMatrix, LinearOperator, scale_and_add_masses};
+use crate::stage::{Stage, Stages};
 
 /// The matrix of an implicit step: masses on the diagonal and a multiple of the stiffness.
 pub(super) struct Tangent<'a, T: Scalar> {
@@ -11,16 +12,19 @@ pub(super) struct Tangent<'a, T: Scalar> {
     pub(super) assembled: Option<&'a mut BlockMatrix<T>>,
     pub(super) masses: &'a [T],
     pub(super) stiffness: T,
+    pub(super) stages: Stages<'a>,
 }
 
 impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
     fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
         match &mut self.assembled {
-            Some(matrix) => matrix.apply(x, out),
+            Some(matrix) => self.stages.run(Stage::Products("assembled-matrix"), || matrix.apply(x, out)),
             None => {
                 out.fill(Vec3::ZERO);
                 for model in self.models {
-                    model.add_product(self.positions, x, self.scratch, out);
+                    self.stages.run(Stage::Products(model.name()), || {
+                        model.add_product(self.positions, x, self.scratch, out);
+                    });
                 }
             }
         }

@@ -4,6 +4,7 @@ use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 use crate::solver::{BlockMatrix, LinearOperator, LinearSolver, SolverError, System, dot};
+use crate::stage::Stages;
 
 /// Shares of the mean diagonal by which a stiffness that is not positive definite is shifted, one after the other.
 const SHIFTS: [f64; 9] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 100.0];
@@ -34,7 +35,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         time: f64,
         solver: &'a mut dyn LinearSolver,
     ) -> Result<Self, StaticError> {
-        body.update_internal_forces();
+        body.update_internal_forces(Stages::unobserved());
         let state = &body.state;
         if !state.motions.iter().any(|motion| !matches!(motion, NodeMotion::Free | NodeMotion::Retired)) {
             return Err(StaticError::NothingHolds { body: body.name.clone() });
@@ -99,7 +100,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     fn residual(&mut self, share: f64) -> (Vec<Vec3<T>>, Vec<Vec3<f64>>, f64) {
         let body = &mut *self.body;
         body.state.positions_changed();
-        body.update_internal_forces();
+        body.update_internal_forces(Stages::unobserved());
         body.update_external_forces(self.time, self.gravity);
         let (share, rest) = (T::from_f64(share), T::from_f64(1.0 - share));
         let loads: Vec<Vec3<T>> = (0..self.start.len())
@@ -247,7 +248,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     /// Stops the nodes and brings the forces up to date, so that reactions can be read.
     pub(super) fn come_to_rest(&mut self) {
         self.body.state.velocities.fill(Vec3::ZERO);
-        self.body.update_internal_forces();
+        self.body.update_internal_forces(Stages::unobserved());
         self.body.update_external_forces(self.time, self.gravity);
     }
 
