@@ -178,7 +178,7 @@ impl<T: Scalar> ConjugateGradient<T> {
         let of_rhs = preconditioner.squared_norm(&self.residual, problem.executor);
         let of_product = preconditioner.squared_norm(&self.product, problem.executor);
         for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
-            *residual = *residual - product;
+            *residual -= product;
         }
         of_rhs.sqrt() + of_product.sqrt()
     }

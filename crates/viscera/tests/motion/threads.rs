@@ -15,7 +15,7 @@ fn lame() -> Lame {
 
 /// A beam of 5 000 tetrahedra, in several patches, that falls to one side, loses a corner and goes on.
 fn end_of_motion<T: Precision>(recipe: Box<dyn ModelRecipe>, integrator: Integrator, threads: usize) -> Vec<Vec3<T>> {
-    let config = WorldConfig { step: 2e-3, gravity: [0.0, -9.81, 0.0], integrator, ..WorldConfig::default() };
+    let config = WorldConfig { step: 2e-3, gravity: [0.0, -9.81, 0.0], integrator };
     let mut world = World::<T>::new(config).unwrap();
     let held = Region::plane([0.0; 3], [0.0, 0.0, 1.0], 0.0);
     let mesh = TetMesh::box_grid([6, 6, 24], [0.06, 0.06, 0.24]);

@@ -517,7 +517,7 @@ fn gather<T: Scalar, S: Simd, const FIELDS: usize>(
 #[inline(always)]
 fn minus<R: Real, const FIELDS: usize>(mut places: [Vec3<R>; FIELDS], origin: &[Vec3<R>; FIELDS]) -> [Vec3<R>; FIELDS] {
     for field in 0..FIELDS {
-        places[field] = places[field] - origin[field];
+        places[field] -= origin[field];
     }
     places
 }
