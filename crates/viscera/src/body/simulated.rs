@@ -1,5 +1,6 @@
 use super::{Body, BodyError, BodyState, Guides, LoosePieces, MotionBackup, NodalLoads, NodeMotion, PastState};
 use crate::curve::Curve;
+use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
@@ -17,7 +18,7 @@ pub struct SimulatedBody<T: Scalar> {
     /// Rest volumes of the cells [m³].
     pub(crate) cell_volumes: Vec<f64>,
     pub(crate) model: ModelKind,
-    pub(crate) law: &'static str,
+    pub(crate) law: LawKind,
     /// Damping rate γ_i/m_i [1/s].
     pub(crate) damping: T,
     /// α of Rayleigh's damping [s].
@@ -114,7 +115,7 @@ impl<T: Scalar> SimulatedBody<T> {
         let state = initial_state(&name, &mesh, &corner_masses, motions, models)?;
         Ok(Self {
             model: recipe.kind(),
-            law: recipe.tissue().kind().name(),
+            law: recipe.tissue().kind(),
             damping: T::from_f64(damping),
             stiffness_damping: T::from_f64(stiffness_damping),
             rest: state.positions.clone(),
@@ -154,7 +155,7 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Name of the law.
     pub fn law(&self) -> &'static str {
-        self.law
+        self.law.name()
     }
 
     /// The state: positions, velocities, forces, what is cut away.
