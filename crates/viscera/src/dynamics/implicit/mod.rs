@@ -25,6 +25,7 @@ mod memory;
 mod newmark;
 mod newton;
 mod report;
+mod retreat;
 mod scheme;
 mod settings;
 mod step;

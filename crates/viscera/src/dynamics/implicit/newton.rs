@@ -13,8 +13,7 @@ pub(super) const INSTEAD: (f64, u32) = (1e-3, 40);
 /// The line search is content when the work of the residual along the correction has fallen below this share.
 const CONTENT: f64 = 0.9;
 /// It goes farther while more than this share of the work is left to be done: tissue that softens on the way has its
-/// correction from the masses alone, and crawled. A bar of neo-Hookean tissue, pulled to 1000 times its length, did not balance
-/// in 100 iterations.
+/// correction from the masses alone, and crawled.
 const STEEP: f64 = 0.5;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
@@ -50,6 +49,9 @@ impl<T: Scalar> Step<'_, T> {
         }
         let (relative, at_most) = INSTEAD;
         let report = self.solve_in_full(relative, at_most);
+        if !report.converged {
+            self.retreat();
+        }
         ImplicitReport {
             linear_iterations: solve.iterations + report.linear_iterations,
             negative_curvature: solve.negative_curvature || report.negative_curvature,
