@@ -164,13 +164,13 @@ impl Method {
     }
 
     /// Backward Euler whose equations are solved in full: never gains energy.
-    pub(super) fn never_gains(self) -> bool {
+    pub fn never_gains(self) -> bool {
         self.implicit_settings()
             .is_some_and(|own| own.scheme == Scheme::BackwardEuler && own.newton != Newton::Linearised)
     }
 
     /// Linearised backward Euler: stays bounded.
-    pub(super) fn stays_bounded(self) -> bool {
+    pub fn stays_bounded(self) -> bool {
         self.implicit_settings()
             .is_some_and(|own| own.scheme == Scheme::BackwardEuler && own.newton == Newton::Linearised)
     }

@@ -31,6 +31,14 @@ pub struct Sameness {
     pub displacement: f64,
 }
 
+impl Sameness {
+    /// What sums in another order may leave, of the largest displacement: roundings that some hundred explicit steps carry along,
+    /// or, of implicit ones, what is left of their equations.
+    pub fn tolerance(&self) -> f64 {
+        1e-9
+    }
+}
+
 /// How a scene is told.
 struct Telling {
     turn: Mat3<f64>,

@@ -97,6 +97,11 @@ pub enum Obstacle {
 }
 
 impl Case {
+    /// Whether the forces have a potential, so that energy means something.
+    pub fn has_energy(&self) -> bool {
+        self.combination.claims().conservative
+    }
+
     /// What is in the way of the rest shape; nothing where it has to come back.
     pub fn obstacle(&self) -> Option<Obstacle> {
         let objective = self.combination.claims().objective;

@@ -24,6 +24,22 @@ fn cube(model: impl viscera::model::ModelRecipe + 'static) -> Body {
     Body::new(TetMesh::box_grid([2, 2, 2], [0.1; 3]), DENSITY).model(model)
 }
 
+/// No cell is inverted, and no edge differs from that at rest by a millionth of the size: whatever the pose.
+fn assert_is_in_rest_shape(world: &World<f64>, id: BodyId) {
+    let body = world.body(id);
+    let mesh = body.mesh();
+    for cell in 0..mesh.cell_count() {
+        assert!(body.volume_ratio(cell) > 0.0, "cell {cell} is inside out");
+        for (i, &a) in mesh.cell(cell).iter().enumerate() {
+            for &b in &mesh.cell(cell)[..i] {
+                let length = |x: &[Vector]| (x[a as usize] - x[b as usize]).norm();
+                let change = length(body.positions()) - length(mesh.nodes());
+                assert!(change.abs() < 1e-6 * mesh.size(), "cell {cell}: {change:e} m");
+            }
+        }
+    }
+}
+
 /// St Venant–Kirchhoff tissue is at rest in a mirror, and says which law would turn it back; in its rest shape it says nothing.
 #[test]
 fn tissue_that_is_blind_to_reflections_says_so_and_names_the_law_that_is_not() {
@@ -64,34 +80,22 @@ fn tissue_that_sees_reflections_comes_back_from_its_mirror_image() {
         for _ in 0..60 {
             world.step().unwrap();
         }
-        let body = world.body(id);
-        let mesh = body.mesh();
-        for cell in 0..mesh.cell_count() {
-            assert!(body.volume_ratio(cell) > 0.0);
-            for (i, &a) in mesh.cell(cell).iter().enumerate() {
-                for &b in &mesh.cell(cell)[..i] {
-                    let length = |x: &[Vector]| (x[a as usize] - x[b as usize]).norm();
-                    let change = length(body.positions()) - length(mesh.nodes());
-                    assert!(change.abs() < 1e-6 * mesh.size(), "cell {cell}: {change:e} m");
-                }
-            }
-        }
+        assert_is_in_rest_shape(&world, id);
     }
 }
 
-/// Neo-Hookean tissue let go at a thousand times its length is a hundred times faster on the way back than at its ends: sub-steps
-/// follow, and the rest shape comes back.
+/// Stable neo-Hookean tissue let go at a thousand times its length is faster by far on the way back than at both ends:
+/// sub-steps follow, and the rest shape comes back.
 #[test]
 fn tissue_let_go_at_a_thousand_times_its_length_comes_back() {
     let law = StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap();
     let mesh = TetMesh::box_grid([1, 1, 2], [0.1; 3]);
-    let body = Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue(law))).fix(side("z-min")).damping(50.0);
+    let body = Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue(law))).damping(50.0);
     let mut world = world::<f64>([0.0; 3], 2e-2);
     let id = world.add(body).unwrap();
     world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
-    for _ in 0..100 {
+    for _ in 0..60 {
         world.step().unwrap();
     }
-    let seen = world.observe(id);
-    assert!(seen.max_displacement < 1e-6 * 0.17 && seen.inverted_cells == 0, "{} m", seen.max_displacement);
+    assert_is_in_rest_shape(&world, id);
 }
