@@ -152,8 +152,11 @@ fn released_from_impossible_shapes_tissue_comes_back() {
             assert!(trial.peak < 1.0 + 1e-9, "{trial:?}");
         }
     }
-    let back = trials.iter().filter(|trial| trial.outcome == Outcome::Back).count();
-    assert!(2 * back > trials.len(), "{back} of {} come back", trials.len());
+    // The rest is at another equilibrium without an inverted cell, or soft and slow.
+    let due: Vec<_> =
+        trials.iter().filter(|trial| trial.case.method.stays_bounded() && trial.case.obstacle().is_none()).collect();
+    let back = due.iter().filter(|trial| trial.outcome == Outcome::Back).count();
+    assert!(due.len() > 30 && 10 * back >= 9 * due.len(), "{back} of {} come back", due.len());
 }
 
 /// Every stiffness, step and unit: steps are made or refused, and backward Euler gains no energy.
@@ -161,7 +164,10 @@ fn released_from_impossible_shapes_tissue_comes_back() {
 fn no_stiffness_step_or_unit_breaks_a_step() {
     for tally in torture::ranges(Size::Small).unwrap() {
         assert_eq!((tally.not_numbers, tally.panics), (0, 0), "{tally:?}");
-        assert_eq!(tally.made + tally.undone.iter().sum::<u32>(), if tally.refused.is_some() { 0 } else { tally.tried });
+        assert_eq!(
+            tally.made + tally.undone.iter().sum::<u32>(),
+            if tally.refused.is_some() { 0 } else { tally.tried }
+        );
     }
 }
 

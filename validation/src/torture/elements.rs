@@ -149,12 +149,12 @@ impl Element {
         }
     }
 
-    /// Whether every number that a law or a table is made of can be told: the sixth power of the stretch (J² and its derivative)
-    /// times a modulus, and the third power of lengths and of their inverses.
+    /// Whether every number that a law or a table is made of can be told: the eighth power of the stretch (J² I_C of inverted
+    /// neo-Hookean tissue) times a modulus, and the fourth power of lengths and of their inverses.
     fn is_in_range<T: Scalar>(&self, stretch: f64, young: f64) -> bool {
         let most = if size_of::<T>() == 4 { 38.0 } else { 308.0 };
         let stretch = stretch.max(0.0) + self.slimness + 1.5;
         let length = self.size.abs() + self.slimness + 0.5;
-        6.0 * stretch + young.log10() + 4.0 * length < most
+        8.0 * stretch + young.log10() + 4.0 * length < most
     }
 }

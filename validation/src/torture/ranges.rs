@@ -11,7 +11,7 @@ use crate::setting::plane;
 use crate::{Size, ValidationError};
 
 /// Steps made in each setting.
-const STEPS: u32 = 6;
+const STEPS: u32 = 4;
 
 /// What a combination and an integrator did over the ranges.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,18 +49,21 @@ struct Setting {
 
 fn settings(size: Size) -> Vec<Setting> {
     let (youngs, poissons, steps): (&[f64], &[f64], &[f64]) = match size {
-        Size::Full => (&[1e2, 1e3, 1e4, 1e5, 1e7, 1e9], &[0.0, 0.3, 0.45, 0.49, 0.4999], &[1e-4, 1e-3, 1e-2, 0.1, 1.0]),
-        Size::Small => (&[1e2, 1e9], &[0.0, 0.4999], &[1e-4, 1.0]),
+        Size::Full => (&[1e2, 1e4, 1e6, 1e9], &[0.0, 0.45, 0.4999], &[1e-4, 1e-3, 1e-2, 0.1, 1.0]),
+        Size::Small => (&[1e2, 1e5], &[0.0, 0.4999], &[1e-4, 1.0]),
     };
     let mut settings = Vec::new();
+    let mut in_both_units = |stiffness: Stiffness, step: f64| {
+        settings.extend([1.0, 1000.0].map(|length| Setting { stiffness, step, length }));
+    };
     for &young in youngs {
         for &poisson in poissons {
-            for &step in steps {
-                for length in [1.0, 1000.0] {
-                    settings.push(Setting { stiffness: Stiffness { young, poisson }, step, length });
-                }
-            }
+            steps.iter().for_each(|&step| in_both_units(Stiffness { young, poisson }, step));
         }
+    }
+    if size == Size::Small {
+        // A second of these would be half a million explicit sub-steps.
+        in_both_units(Stiffness { young: 1e9, poisson: 0.4999 }, 1e-4);
     }
     settings
 }
@@ -98,7 +101,7 @@ pub(super) fn attempt(combination: Combination, method: Method, size: Size) -> R
 
 fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), ValidationError> {
     let Setting { stiffness: Stiffness { young, poisson }, step, length } = setting;
-    let across = if size == Size::Full { [2, 2, 2] } else { [1, 1, 1] };
+    let across = if size == Size::Full { [1, 1, 2] } else { [1; 3] };
     // Pa = kg/(m s²), kg/m³
     let stiffness = Stiffness { young: young / length, poisson };
     let mesh = tally.combination.cells.fill(across, [EDGE * length; 3]);

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use viscera::model::ModelKind;
 use viscera::world::{BodyId, World};
 
 use super::combination::{Combination, Method};
@@ -104,15 +105,15 @@ impl Case {
 
     /// What is in the way of the rest shape; nothing where it has to come back.
     pub fn obstacle(&self) -> Option<Obstacle> {
-        let objective = self.combination.claims().objective;
-        let inside_out = !matches!(self.shape, Shape::Line | Shape::Plane) || !self.held;
-        if self.combination.is_blind_to_reflections() && inside_out {
+        // A flat cell may leave its plane on either side.
+        if self.combination.is_blind_to_reflections() {
             return Some(Obstacle::Mirror);
         }
+        let objective = self.combination.claims().objective;
+        // Models that take a rotation out have one for null deformation gradients too.
+        let turns = matches!(self.combination.model, ModelKind::Corotational | ModelKind::StiffnessWarping);
         match self.shape {
-            Shape::Point | Shape::Line if !self.held && self.combination.claims().of_the_law && objective => {
-                Some(Obstacle::Symmetry)
-            }
+            Shape::Point | Shape::Line if !self.held && objective && !turns => Some(Obstacle::Symmetry),
             _ if !self.held && !objective => Some(Obstacle::Turned),
             _ => None,
         }

@@ -6,7 +6,7 @@ use viscera::mesh::TetMesh;
 use viscera::model::{NodallyIntegrated, TotalLagrangian};
 use viscera::world::{BodyId, World};
 
-use crate::support::{DENSITY, Vector, side, world};
+use crate::support::{DENSITY, Vector, world};
 
 /// A cube of 10 cm, held by nothing, damped near critically, in its mirror image.
 fn mirrored(body: Body) -> (World<f64>, BodyId) {

@@ -25,7 +25,6 @@ mod memory;
 mod newmark;
 mod newton;
 mod report;
-mod retreat;
 mod scheme;
 mod settings;
 mod step;

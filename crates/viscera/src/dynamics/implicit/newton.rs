@@ -49,9 +49,6 @@ impl<T: Scalar> Step<'_, T> {
         }
         let (relative, at_most) = INSTEAD;
         let report = self.solve_in_full(relative, at_most);
-        if !report.converged {
-            self.retreat();
-        }
         ImplicitReport {
             linear_iterations: solve.iterations + report.linear_iterations,
             negative_curvature: solve.negative_curvature || report.negative_curvature,
