@@ -9,7 +9,8 @@ impl Torture {
     pub fn report(&self) -> Report {
         let report = Report::new("Torture").text(
             "Every force model of every law on tetrahedra and hexahedra, with every integrator, in shapes, scales, units and cuts \
-             that nothing should survive. With `--small`, as in the tests, meshes are smaller, and of the shapes one case in five is tried. Nothing panics, no number that is none comes through, and what cannot be done is undone \
+             that nothing should survive. With `--small`, as in the tests, meshes are smaller, and of the shapes one case in \
+             five is tried. Nothing panics, no number that is none comes through, and what cannot be done is undone \
              by an error that says what to do instead. In double precision unless it says otherwise.",
         );
         let report = self.refused(report);
