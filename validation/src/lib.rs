@@ -16,6 +16,7 @@ pub mod fixed_beam;
 pub mod frequencies;
 pub mod nearly_incompressible;
 pub mod step_cost;
+pub mod torture;
 pub mod truth_cube;
 
 use std::path::PathBuf;
@@ -59,11 +60,13 @@ pub enum StudyKind {
     AssemblyCrossover,
     /// Time per step against number of cells, for every model.
     StepCost,
+    /// Every model, law and integrator in shapes, scales and cuts that nothing should survive.
+    Torture,
 }
 
 impl StudyKind {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::FixedBeam,
         Self::Cantilevers,
         Self::Frequencies,
@@ -71,6 +74,7 @@ impl StudyKind {
         Self::TruthCube,
         Self::AssemblyCrossover,
         Self::StepCost,
+        Self::Torture,
     ];
 
     /// Its name on the command line, and of its folder.
@@ -83,6 +87,7 @@ impl StudyKind {
             Self::TruthCube => "truth-cube",
             Self::AssemblyCrossover => "assembly-crossover",
             Self::StepCost => "step-cost",
+            Self::Torture => "torture",
         }
     }
 
@@ -99,6 +104,7 @@ impl StudyKind {
             Self::TruthCube => Ok(truth_cube::study(settings)?.report()),
             Self::AssemblyCrossover => Ok(assembly_crossover::study(settings.size)?.report()),
             Self::StepCost => Ok(step_cost::study(settings.size)?.report()),
+            Self::Torture => Ok(torture::study(settings.size)?.report()),
         }
     }
 }

@@ -17,6 +17,8 @@ pub struct Report {
 enum Block {
     Text(String),
     Table(Table),
+    /// A table in a file of its own, too long for the page.
+    Data(Table),
     Plot(Plot),
 }
 
@@ -45,7 +47,8 @@ impl Table {
     }
 
     fn csv(&self) -> String {
-        let line = |cells: &[String]| cells.join(",") + "\n";
+        let cell = |text: &String| if text.contains(',') { format!("\"{text}\"") } else { text.clone() };
+        let line = |cells: &[String]| cells.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
         self.rows.iter().fold(line(&self.head), |text, row| text + &line(row))
     }
 }
@@ -62,6 +65,11 @@ impl Report {
 
     pub(crate) fn table(mut self, table: Table) -> Self {
         self.blocks.push(Block::Table(table));
+        self
+    }
+
+    pub(crate) fn data(mut self, table: Table) -> Self {
+        self.blocks.push(Block::Data(table));
         self
     }
 
@@ -86,6 +94,11 @@ impl Report {
                 Block::Table(table) => {
                     write_aside(folder, &format!("{}.csv", table.name), &table.csv())?;
                     page.push_str(&table.markdown());
+                }
+                Block::Data(table) => {
+                    let file = format!("{}.csv", table.name);
+                    write_aside(folder, &file, &table.csv())?;
+                    let _ = writeln!(page, "All {} of them: [{file}]({file}).", table.rows.len());
                 }
                 Block::Plot(plot) => {
                     write_aside(folder, &format!("{}.svg", plot.name), &plot.svg()?)?;

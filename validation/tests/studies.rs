@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use viscera_validation::torture::{self, End, Outcome};
 use viscera_validation::{
     Settings, Size, StudyKind, cantilevers, fixed_beam, frequencies, nearly_incompressible, truth_cube,
 };
@@ -115,5 +116,86 @@ fn a_study_writes_its_page_with_tables_and_plots() {
             assert!(page.contains(file.as_str()), "{file} is not shown");
         }
         assert!(files.iter().any(|file| file.ends_with(".csv")) && files.iter().any(|file| file.ends_with(".svg")));
+    }
+}
+
+/// What the registry says works, works; everything else is refused by an error of a type made for that.
+#[test]
+fn what_is_not_computed_is_refused_and_nothing_else() {
+    let refusals = torture::refusals().unwrap();
+    assert_eq!(refusals.len(), 6 * 6 * 2 * 9);
+    for refusal in refusals {
+        let able = refusal.combination.is_able();
+        let conserving = refusal.method.starts_with("energy–momentum");
+        match refusal.why {
+            None => assert!(able, "{refusal:?} should be refused"),
+            Some("law not supported" | "cells not supported") => assert!(!able, "{refusal:?}"),
+            Some("linearised energy–momentum") => assert_eq!(refusal.method, "energy–momentum, linearised"),
+            Some(why) => assert!(able && conserving && why == "no mean forces", "{refusal:?}"),
+        }
+    }
+}
+
+/// Released from impossible shapes, no body yields a number that is none, none gains energy in full backward Euler steps, and
+/// whatever nothing is in the way of comes back, or to rest elsewhere.
+#[test]
+fn released_from_impossible_shapes_tissue_comes_back() {
+    let trials = torture::release(Size::Small).unwrap();
+    for trial in &trials {
+        let (case, outcome) = (&trial.case, &trial.outcome);
+        assert!(!matches!(outcome, Outcome::NotANumber | Outcome::Panicked), "{trial:?}");
+        if case.has_energy() && case.method.never_gains() {
+            // Newton's residual of 1e-8, squared, is what an energy near its minimum feels of it; and roundings.
+            assert!(trial.gain < 1e-14, "{trial:?}");
+        }
+        if case.has_energy() && case.method.stays_bounded() {
+            assert!(trial.peak < 1.0 + 1e-9, "{trial:?}");
+        }
+    }
+    // The rest is at another equilibrium without an inverted cell, or soft and slow.
+    let due: Vec<_> =
+        trials.iter().filter(|trial| trial.case.method.stays_bounded() && trial.case.obstacle().is_none()).collect();
+    let back = due.iter().filter(|trial| trial.outcome == Outcome::Back).count();
+    assert!(due.len() > 30 && 10 * back >= 9 * due.len(), "{back} of {} come back", due.len());
+}
+
+/// Every stiffness, step and unit: steps are made or refused, and backward Euler gains no energy.
+#[test]
+fn no_stiffness_step_or_unit_breaks_a_step() {
+    for tally in torture::ranges(Size::Small).unwrap() {
+        assert_eq!((tally.not_numbers, tally.panics), (0, 0), "{tally:?}");
+        assert_eq!(
+            tally.made + tally.undone.iter().sum::<u32>(),
+            if tally.refused.is_some() { 0 } else { tally.tried }
+        );
+    }
+}
+
+/// Millimetres, turns and numbers of nodes tell the same motion, to what differently ordered sums leave.
+#[test]
+fn a_motion_is_the_same_however_it_is_told() {
+    for row in torture::sameness(Size::Small).unwrap() {
+        let worst = row.units.max(row.renumbered).max(row.turned.unwrap_or(0.0));
+        assert!(worst < row.tolerance(), "{row:?}");
+        assert!(row.displacement > 1e-3, "{row:?} hardly moves");
+    }
+}
+
+/// Nothing is left of bodies that were cut down to nothing, inside out or not.
+#[test]
+fn of_a_body_that_is_cut_away_nothing_is_left() {
+    let inverted = torture::cut_while_inverted(Size::Small).unwrap();
+    let upright = torture::cut_to_nothing(Size::Small).unwrap();
+    for cuts in inverted.iter().chain(&upright) {
+        assert!(matches!(cuts.end, End::Nothing | End::Refused(_)), "{cuts:?}");
+    }
+}
+
+/// Elements of every size and shape give finite forces, products and energies, wherever the precision can tell them.
+#[test]
+fn single_elements_give_finite_numbers() {
+    for tally in torture::elements(Size::Small).unwrap() {
+        assert_eq!((tally.broken, tally.panics), (0, 0), "{tally:?}");
+        assert!(tally.in_range > tally.tried / 4, "{tally:?}");
     }
 }

@@ -80,6 +80,9 @@ pub(super) struct BodyResult {
     pub(super) inverted_cells: usize,
     /// The most at a time.
     pub(super) peak_inverted_cells: usize,
+    /// Which of them stay so at the end, and what to do about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) inside_out: Option<String>,
     /// Shape of the worst cell at the end: 1 regular, 0 flat, negative inverted.
     pub(super) worst_quality: f64,
     /// The worst over the run.

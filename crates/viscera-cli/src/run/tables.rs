@@ -10,6 +10,9 @@ use crate::units::with_prefix;
 /// Everything about a run, for a person.
 pub(super) fn tables(summary: &Summary) -> String {
     let mut parts = vec![bodies(&summary.bodies)];
+    for body in &summary.bodies {
+        parts.extend(body.inside_out.as_ref().map(|found| format!("{}: {found}", heading(&body.name))));
+    }
     if let Some(comparison) = comparison(&summary.bodies) {
         parts.push(format!("{}\n{comparison}", heading("volume variation")));
     }

@@ -144,6 +144,7 @@ impl Tally {
                     removed_cells: last.removed_cells,
                     inverted_cells: last.inverted_cells,
                     peak_inverted_cells: tally.inverted_cells,
+                    inside_out: last.inside_out.map(|cells| cells.to_string()),
                     worst_quality: last.worst_quality,
                     lowest_quality: tally.quality,
                     peak_net_internal_force: tally.net_force,

@@ -3,6 +3,7 @@ use super::{
     PastState, Removals,
 };
 use crate::curve::Curve;
+use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
@@ -25,7 +26,7 @@ pub struct SimulatedBody<T: Scalar> {
     /// Tells the body apart from others, see [`fingerprint`].
     pub(crate) fingerprint: u32,
     pub(crate) model: ModelKind,
-    pub(crate) law: &'static str,
+    pub(crate) law: LawKind,
     /// Damping rate γ_i/m_i [1/s].
     pub(crate) damping: T,
     /// α of Rayleigh's damping [s].
@@ -124,7 +125,7 @@ impl<T: Scalar> SimulatedBody<T> {
         Ok(Self {
             fingerprint: fingerprint(&plan, &mesh, &corner_masses),
             model: plan.recipe.kind(),
-            law: plan.recipe.tissue().kind().name(),
+            law: plan.recipe.tissue().kind(),
             damping: T::from_f64(damping),
             stiffness_damping: T::from_f64(stiffness_damping),
             rest: state.positions.clone(),
@@ -166,7 +167,7 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Name of the law.
     pub fn law(&self) -> &'static str {
-        self.law
+        self.law.name()
     }
 
     /// The state: positions, velocities, forces, what is cut away.

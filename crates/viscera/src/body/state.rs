@@ -172,6 +172,11 @@ impl<T: Scalar> MotionBackup<T> {
         self.past.copy_from(&state.past);
     }
 
+    /// Positions that were kept [m].
+    pub(crate) fn positions(&self) -> &[Vec3<T>] {
+        &self.positions
+    }
+
     /// Puts the copy back.
     pub(crate) fn put_back(&self, state: &mut BodyState<T>) {
         state.positions.clone_from(&self.positions);

@@ -1,9 +1,12 @@
 //! The only list of laws.
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     LawFamily, LinearElastic, NeoHookean, StVenantKirchhoff, StableNeoHookean, TransverseLinear,
     TransverseStVenantKirchhoff,
 };
+use crate::math::Mat3;
 
 /// Something that is done for one law, whichever it is: the way from a [`LawKind`] back to its type.
 pub trait LawVisitor {
@@ -16,7 +19,7 @@ pub trait LawVisitor {
 macro_rules! laws {
     ($($law:ident),+ $(,)?) => {
         /// Every law, by kind.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum LawKind {
             $(
                 #[doc = concat!("[`", stringify!($law), "`].")]
@@ -54,6 +57,24 @@ macro_rules! laws {
 }
 
 laws!(LinearElastic, StVenantKirchhoff, TransverseLinear, TransverseStVenantKirchhoff, NeoHookean, StableNeoHookean,);
+
+impl LawKind {
+    /// The law that brings tissue back from every deformation, whatever was done to it.
+    pub const TURNS_BACK: Self = Self::StableNeoHookean;
+
+    /// Whether the law cannot tell a cell from its mirror image: one that is turned inside out is as content as at rest, and
+    /// stays so.
+    pub fn is_blind_to_reflections(self) -> bool {
+        struct OfMirrored;
+        impl LawVisitor for OfMirrored {
+            type Output = f64;
+            fn visit<L: LawFamily>(self) -> f64 {
+                L::example().energy(&Mat3::diagonal(-1.0))
+            }
+        }
+        self.visit(OfMirrored) == 0.0
+    }
+}
 
 impl std::fmt::Display for LawKind {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -10,7 +10,7 @@ mod step_implicit;
 
 pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
-pub use observables::{BodyObservables, InstrumentObservables};
+pub use observables::{BodyObservables, InsideOut, InstrumentObservables};
 pub use snapshot::{Snapshot, SnapshotError};
 pub use step::StepReport;
 

@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::instrument::holding_force;
+use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{TetQuality, VolumeMesh, scaled_jacobian};
 use crate::stage::Stages;
@@ -42,6 +43,8 @@ pub struct BodyObservables {
     pub removed_cells: usize,
     /// Cells whose volume is negative.
     pub inverted_cells: usize,
+    /// Inverted cells that stay so, because the law is blind to reflections and no volume is kept; none otherwise.
+    pub inside_out: Option<InsideOut>,
     /// Shape of the worst cell now: of tetrahedra the radius ratio (1 regular, 0 flat, negative inverted), of hexahedra the
     /// scaled Jacobian (1 for a box, 0 or less where a corner is flat or turned inside out); 1 for a body without cells.
     pub worst_quality: f64,
@@ -49,6 +52,31 @@ pub struct BodyObservables {
     pub nonlinear_nodes: usize,
     /// Whether the kinetic energy has died down to a hundred-millionth of the elastic energy.
     pub at_rest: bool,
+}
+
+/// Cells that are turned inside out for good: the law of the body cannot tell them from their mirror images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InsideOut {
+    /// How many.
+    pub cells: usize,
+    /// The first of them.
+    pub first: usize,
+    /// The law.
+    pub law: LawKind,
+    /// A law that turns them back.
+    pub instead: LawKind,
+}
+
+impl std::fmt::Display for InsideOut {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { cells, first, law, instead } = self;
+        let (are, they) = if *cells == 1 { ("cell is", "it stays") } else { ("cells are", "they stay") };
+        write!(
+            formatter,
+            "{cells} {are} inside out (cell {first} is the first), and {they} so: the law `{law}` cannot tell a cell from its \
+             mirror image; take the law `{instead}`, which turns cells back"
+        )
+    }
 }
 
 /// Numbers about an instrument.
@@ -105,10 +133,10 @@ impl<T: Scalar> SimulatedBody<T> {
             .sqrt()
     }
 
-    /// Current volumes of the cells that are left, with their volumes at rest [m³].
-    fn volumes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    /// The cells that are left, their volumes now and at rest [m³].
+    fn volumes(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);
-        left.map(|cell| (self.cell_volume(cell), self.cell_volumes[cell]))
+        left.map(|cell| (cell, self.cell_volume(cell), self.cell_volumes[cell]))
     }
 
     /// Torque of the internal forces about the centre of mass [N m].
@@ -161,12 +189,17 @@ impl<T: Scalar> SimulatedBody<T> {
         }
         let net_internal_torque = self.net_internal_torque();
         let elastic = state.models.iter().map(|model| model.energy(&state.positions)).sum::<f64>();
-        let (mut volume, mut rest_volume, mut inverted_cells) = (0.0, 0.0, 0);
-        for (now, rest) in self.volumes() {
+        let (mut volume, mut rest_volume, mut inverted_cells, mut first_inverted) = (0.0, 0.0, 0, 0);
+        for (cell, now, rest) in self.volumes() {
             volume += now;
             rest_volume += rest;
-            inverted_cells += usize::from(now < 0.0);
+            if now < 0.0 {
+                first_inverted = if inverted_cells == 0 { cell } else { first_inverted };
+                inverted_cells += 1;
+            }
         }
+        let for_good = inverted_cells > 0 && state.models.len() == 1 && self.law.is_blind_to_reflections();
+        let (first, law, instead) = (first_inverted, self.law, LawKind::TURNS_BACK);
         BodyObservables {
             kinetic_energy: kinetic,
             elastic_energy: elastic,
@@ -182,6 +215,7 @@ impl<T: Scalar> SimulatedBody<T> {
             reaction,
             removed_cells: state.removed_count,
             inverted_cells,
+            inside_out: for_good.then_some(InsideOut { cells: inverted_cells, first, law, instead }),
             worst_quality: self.worst_quality(),
             nonlinear_nodes,
             at_rest: kinetic <= REST_RATIO * elastic,

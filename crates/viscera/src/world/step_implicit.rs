@@ -31,7 +31,7 @@ impl<T: Scalar> World<T> {
             }
             report = report.worst(own);
         }
-        if !stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.state.is_finite())) {
+        if !stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds())) {
             self.undo();
             return Err(self.diverged());
         }
@@ -46,7 +46,7 @@ impl<T: Scalar> World<T> {
         StepError::NotConverged {
             time: self.time(),
             body: body.name.clone(),
-            law: body.law,
+            law: body.law(),
             iterations: report.newton_iterations,
             residual: report.residual,
         }

@@ -8,3 +8,4 @@ mod reference;
 mod sameness;
 mod solver;
 mod support;
+mod torture;

@@ -11,6 +11,7 @@ mod dynamics_loads;
 mod dynamics_statics;
 mod grasper;
 mod guides;
+mod inside_out;
 mod reference_cylinder;
 mod reference_tube;
 mod support;

@@ -33,6 +33,34 @@ fn objective_laws_and_only_they_ignore_rotations_in_space() {
     LawKind::ALL.iter().for_each(|kind| kind.visit(Check));
 }
 
+/// Laws that say that they are blind to reflections store the same energy in a cell and in its mirror image, whatever the
+/// deformation; the others store energy in the mirror image of the shape at rest, which drives it back.
+#[test]
+fn only_laws_that_say_so_are_blind_to_reflections() {
+    struct Check(bool);
+    impl LawVisitor for Check {
+        type Output = ();
+        fn visit<L: LawFamily>(self) {
+            let (law, mut random) = (L::example(), Random::new(23));
+            let mu = law.at_rest().lame.mu;
+            for _ in 0..20 {
+                let (f, q) = (random.deformation(0.4), random.rotation());
+                let mirror = q * Matrix::diagonal(-1.0);
+                if self.0 {
+                    assert_close(law.energy(&(mirror * f)), law.energy(&f), 1e-13, L::NAME);
+                } else {
+                    let energy = law.energy(&mirror);
+                    assert!(energy > mu, "{}: {energy} J/m³ in a mirror", L::NAME);
+                }
+            }
+        }
+    }
+    LawKind::ALL.iter().for_each(|kind| kind.visit(Check(kind.is_blind_to_reflections())));
+    let blind: Vec<_> = LawKind::ALL.iter().filter(|kind| kind.is_blind_to_reflections()).collect();
+    assert_eq!(blind, [&LawKind::StVenantKirchhoff, &LawKind::TransverseStVenantKirchhoff]);
+    assert!(!LawKind::TURNS_BACK.is_blind_to_reflections());
+}
+
 /// The torque per volume P Fᵀ − F Pᵀ of an objective law vanishes: Cauchy's stress is symmetric.
 #[test]
 fn cauchy_stress_of_objective_laws_is_symmetric() {

@@ -12,6 +12,11 @@ const ASTRAY: f64 = 0.5;
 pub(super) const INSTEAD: (f64, u32) = (1e-3, 40);
 /// The line search is content when the work of the residual along the correction has fallen below this share.
 const CONTENT: f64 = 0.9;
+/// It goes farther while more than this share of the work is left to be done: tissue that softens on the way has its
+/// correction from the masses alone, and crawled.
+const STEEP: f64 = 0.5;
+/// How much farther the line search goes.
+const FARTHER: f64 = 4.0;
 /// The most lengths that the line search tries.
 const TRIALS: u32 = 10;
 
@@ -19,14 +24,18 @@ impl<T: Scalar> Step<'_, T> {
     /// One linear solve from where the body is; or what stands in for it where that says nothing.
     pub(super) fn solve_linearised(&mut self) -> ImplicitReport {
         let before = self.evaluate();
-        self.go_on();
+        let arrived = self.go_on();
         self.memory.correction.copy_from_slice(&self.memory.coast);
         let solve = self.correct();
         if !solve.negative_curvature {
+            let gain = self.work().abs();
             self.move_by(1.0);
             // The forces there serve the next step.
             let after = self.evaluate();
-            let astray = after.lack > before.lack.max(ASTRAY * after.scale).max(solve.rounding);
+            // A step that ends on a slope steeper than that which it went down has climbed.
+            let climbed = arrived && self.work() > gain && after.lack > ASTRAY * before.lack;
+            let astray = climbed || after.lack > before.lack.max(ASTRAY * after.scale);
+            let astray = astray && after.lack > solve.rounding;
             if !astray && after.lack.is_finite() {
                 return ImplicitReport {
                     newton_iterations: 1,
@@ -99,22 +108,33 @@ impl<T: Scalar> Step<'_, T> {
         -free.zip(&memory.correction).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
     }
 
-    /// Moves along the correction, as far as it leads towards balance. A step that takes driven nodes along is taken whole.
+    /// Moves along the correction, as far as it leads towards balance: neither up again nor where most of the way down is left.
+    /// A step that takes driven nodes along is taken whole.
     fn search(&mut self, arrived: bool) -> Balance {
         let before = self.work();
-        let mut length = 1.0;
+        let (mut length, mut descends, mut climbs) = (1.0, 0.0, f64::INFINITY);
         self.move_by(length);
         let mut balance = self.evaluate();
         for _ in 1..TRIALS {
             let after = self.work();
             let finite = balance.lack.is_finite() && after.is_finite();
-            if finite && (!arrived || after <= CONTENT * before.abs()) {
+            if finite && (!arrived || (after <= CONTENT * before.abs() && after >= -STEEP * before.abs())) {
                 break;
             }
-            let towards = if finite && after > before { before / (before - after) } else { 0.1 };
-            let shorter = length * towards.clamp(0.1, 0.5);
-            self.move_by(shorter - length);
-            length = shorter;
+            if finite && after < 0.0 {
+                descends = length;
+            } else {
+                climbs = length;
+            }
+            let next = if climbs.is_finite() {
+                let towards = if finite && after > before { before / (before - after) } else { 0.1 };
+                let share = (length * towards - descends) / (climbs - descends);
+                descends + share.clamp(0.1, 0.5) * (climbs - descends)
+            } else {
+                FARTHER * length
+            };
+            self.move_by(next - length);
+            length = next;
             balance = self.evaluate();
         }
         balance

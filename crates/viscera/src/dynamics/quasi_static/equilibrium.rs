@@ -264,7 +264,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     /// The error that says how far the load could be raised.
     pub(super) fn beyond(&self, load_factor: f64, failed_factor: f64, failure: StaticFailure) -> StaticError {
         let (cell, volume_ratio) = self.flattest();
-        let (body, law) = (self.body.name.clone(), self.body.law);
+        let (body, law) = (self.body.name.clone(), self.body.law());
         StaticError::NoEquilibrium { body, law, load_factor, failed_factor, failure, cell, volume_ratio }
     }
 }

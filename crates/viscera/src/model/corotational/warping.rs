@@ -85,6 +85,8 @@ impl StiffnessWarping {
 struct WarpedTets<T> {
     cells: Vec<Cell<T>>,
     edges: Vec<Edge<T>>,
+    /// Edges at each node: those of node n are `edges_at_nodes.1[starts[n]..starts[n + 1]]`.
+    edges_at_nodes: (Vec<u32>, Vec<u32>),
     /// (Σ e0 e0ᵀ)⁻¹ of each node.
     fits: Vec<Mat3<T>>,
 }
@@ -140,24 +142,22 @@ impl<T: Scalar> WarpedTets<T> {
             })
         };
         let cells = mesh.cells.iter().enumerate().map(cell).collect::<Result<_, ModelError>>()?;
-        let mut tets = Self { cells, edges, fits: vec![Mat3::ZERO; mesh.nodes.len()] };
-        tets.fit();
+        let edges_at_nodes = edges_at_nodes(&edges, mesh.nodes.len());
+        let mut tets = Self { cells, edges, edges_at_nodes, fits: vec![Mat3::ZERO; mesh.nodes.len()] };
+        (0..mesh.nodes.len()).for_each(|node| tets.fit(node));
         Ok(tets)
     }
 
-    /// Brings the fits up to date with the edges that are left.
-    fn fit(&mut self) {
-        self.fits.fill(Mat3::ZERO);
-        for edge in self.edges.iter().filter(|edge| edge.cells > 0) {
-            for node in edge.nodes {
-                self.fits[node as usize] += edge.rest.outer(edge.rest);
-            }
-        }
-        for fit in &mut self.fits {
-            // a node without cells has nothing to fit
-            let inverse = fit.inverse();
-            *fit = if inverse.is_finite() { inverse } else { Mat3::ZERO };
-        }
+    /// Brings the fit of a node up to date with the edges that are left there.
+    fn fit(&mut self, node: usize) {
+        let (starts, edges) = &self.edges_at_nodes;
+        let here = edges[starts[node] as usize..starts[node + 1] as usize].iter();
+        let left = here.map(|&edge| &self.edges[edge as usize]).filter(|edge| edge.cells > 0);
+        let mut fit = Mat3::ZERO;
+        left.for_each(|edge| fit += edge.rest.outer(edge.rest));
+        // a node without cells has nothing to fit
+        let inverse = fit.inverse();
+        self.fits[node] = if inverse.is_finite() { inverse } else { Mat3::ZERO };
     }
 
     /// R of every node at `x`, nine numbers each.
@@ -209,6 +209,25 @@ impl<T: Scalar> Cell<T> {
         let [a, b, c, d] = self.corners.map(|node| x[node as usize]);
         Mat3::from_columns(b - a, c - a, d - a) * self.inverse
     }
+}
+
+/// The edges at each of `nodes` nodes, in their order.
+fn edges_at_nodes<T>(edges: &[Edge<T>], nodes: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0; nodes + 1];
+    for node in edges.iter().flat_map(|edge| edge.nodes) {
+        starts[node as usize + 1] += 1;
+    }
+    for node in 0..nodes {
+        starts[node + 1] += starts[node];
+    }
+    let (mut next, mut at_nodes) = (starts.clone(), vec![0; 2 * edges.len()]);
+    for (number, edge) in edges.iter().enumerate() {
+        for node in edge.nodes {
+            at_nodes[next[node as usize] as usize] = number as u32;
+            next[node as usize] += 1;
+        }
+    }
+    (starts, at_nodes)
 }
 
 fn read<T: Scalar>(rotations: &[T], node: usize) -> Mat3<T> {
@@ -283,9 +302,9 @@ impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
             let cell = &mut self.cells[cell as usize];
             if !std::mem::replace(&mut cell.removed, true) {
                 cell.edges.iter().for_each(|&edge| self.edges[edge as usize].cells -= 1);
+                cell.corners.into_iter().for_each(|node| self.fit(node as usize));
             }
         }
-        self.fit();
     }
 
     fn bytes(&self) -> usize {

@@ -1,0 +1,318 @@
+//! The page of the suite.
+
+use super::{Combination, Cuts, ElementTally, End, Method, Obstacle, Outcome, Shape, Torture, Trial};
+use crate::Report;
+use crate::report::{Table, brief};
+
+impl Torture {
+    /// The page.
+    pub fn report(&self) -> Report {
+        let report = Report::new("Torture").text(
+            "Every force model of every law on tetrahedra and hexahedra, with every integrator, in shapes, scales, units and cuts \
+             that nothing should survive. With `--small`, as in the tests, meshes are smaller, and of the shapes one case in \
+             five is tried. Nothing panics, no number that is none comes through, and what cannot be done is undone \
+             by an error that says what to do instead. In double precision unless it says otherwise.",
+        );
+        let report = self.refused(report);
+        let report = self.released(report);
+        let report = self.over_ranges(report);
+        let report = self.told_differently(report);
+        self.single_elements(self.cut(report))
+    }
+
+    fn refused(&self, report: Report) -> Report {
+        let mut table = Table::new("refusals", &["why", "combinations", "for example"]);
+        let mut reasons: Vec<&str> = self.refusals.iter().filter_map(|refusal| refusal.why).collect();
+        reasons.sort_unstable();
+        reasons.dedup();
+        for why in reasons {
+            let of: Vec<_> = self.refusals.iter().filter(|refusal| refusal.why == Some(why)).collect();
+            let example =
+                of.first().map_or(String::new(), |first| format!("{}; {}", first.combination.name(), first.method));
+            table.push(vec![why.into(), of.len().to_string(), example]);
+        }
+        let computed = self.refusals.iter().filter(|refusal| refusal.why.is_none()).count();
+        report
+            .text(format!(
+                "## What is computed\n\nOf {} combinations of model, law, cells and integrator {computed} are computed; the rest is \
+                 refused when the body is added, by an error of a type made for that.",
+                self.refusals.len()
+            ))
+            .table(table)
+    }
+
+    fn released(&self, report: Report) -> Report {
+        let mut methods = Table::new(
+            "integrators",
+            &[
+                "integrator",
+                "tried",
+                "back",
+                "must come back",
+                "do",
+                "undone",
+                "no numbers",
+                "panics",
+                "largest gain",
+                "peak",
+            ],
+        );
+        for method in Method::all() {
+            let of: Vec<&Trial> = self.trials.iter().filter(|trial| trial.case.method == method).collect();
+            let count = |good: &dyn Fn(&Trial) -> bool| of.iter().filter(|trial| good(trial)).count().to_string();
+            let refused = |trial: &Trial| matches!(trial.outcome, Outcome::Refused(_));
+            let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none();
+            let conserving = of.iter().filter(|trial| trial.case.combination.claims().conservative);
+            let (gain, peak) = conserving
+                .fold((0.0, 0.0), |(gain, peak): (f64, f64), trial| (gain.max(trial.gain), peak.max(trial.peak)));
+            methods.push(vec![
+                method.name.into(),
+                count(&|trial| !refused(trial)),
+                count(&|trial| trial.outcome == Outcome::Back),
+                count(&has_to),
+                count(&|trial| has_to(trial) && trial.outcome == Outcome::Back),
+                count(&|trial| matches!(trial.outcome, Outcome::Undone(_))),
+                count(&|trial| trial.outcome == Outcome::NotANumber),
+                count(&|trial| trial.outcome == Outcome::Panicked),
+                brief(gain),
+                brief(peak),
+            ]);
+        }
+        let mut all = Table::new(
+            "released",
+            &["model and law", "integrator", "shape", "held", "outcome", "why", "steps", "deviation", "gain", "peak"],
+        );
+        for trial in &self.trials {
+            let (case, why) = (&trial.case, trial.why());
+            all.push(vec![
+                case.combination.name(),
+                case.method.name.into(),
+                case.shape.name().into(),
+                if case.held { "yes" } else { "no" }.into(),
+                trial.outcome.name().into(),
+                why.into(),
+                trial.steps.to_string(),
+                brief(trial.deviation),
+                brief(trial.gain),
+                brief(trial.peak),
+            ]);
+        }
+        report
+            .text(
+                "## Released from impossible shapes\n\nA cube of 10 cm, 48 tetrahedra or 8 hexahedra, E = 10 kPa, ν = 0.4, \
+                 damped at 50 1/s; 300 steps of 20 ms, or until it is at rest. One side is held where it rests, or none. Its vertices are put at random \
+                 places in a box twice as large; all in one point, on a line, in a plane; mirrored; stretched 1000 times; one \
+                 vertex out through the opposite side. It is back when no distance within a cell differs from that at rest by \
+                 more than a millionth of the size, and no cell is inverted. Gain: the largest in a step, and peak: the largest \
+                 energy at all, both of the energy at the start, where the forces have a potential.",
+            )
+            .table(methods)
+            .text(
+                "Which shapes come back, in backward Euler steps, linearised and in full, and in explicit ones; held and free. \
+                 M: cannot, the law is blind to reflections (take `stable-neo-hookean`, `neo-hookean`, or the model \
+                 `corotational`). S: cannot by symmetry, no direction out of a point or a line is better than another. T: takes \
+                 rotations for strain, and comes to rest turned. Where nothing of this is in the way: E, at rest in another \
+                 shape without an inverted cell; I, at rest with inverted cells; +, not at rest yet; U, a step was undone.",
+            )
+            .table(self.shapes())
+            .data(all)
+    }
+
+    fn shapes(&self) -> Table {
+        let heads: Vec<String> = Shape::ALL.iter().flat_map(|shape| [shape.name().to_owned(), "free".into()]).collect();
+        let head: Vec<&str> = std::iter::once("model and law").chain(heads.iter().map(String::as_str)).collect();
+        let mut table = Table::new("shapes", &head);
+        for combination in Combination::able() {
+            let mut row = vec![combination.name()];
+            for shape in Shape::ALL {
+                for held in [true, false] {
+                    let of = |trial: &&Trial| {
+                        let case = &trial.case;
+                        let method =
+                            case.method.never_gains() || case.method.stays_bounded() || case.method == Method::EXPLICIT;
+                        case.combination == combination && case.shape == shape && case.held == held && method
+                    };
+                    row.push(self.trials.iter().filter(of).map(Trial::letter).collect::<Vec<_>>().join(" "));
+                }
+            }
+            table.push(row);
+        }
+        table
+    }
+
+    fn over_ranges(&self, report: Report) -> Report {
+        let mut table = Table::new(
+            "ranges",
+            &[
+                "integrator",
+                "settings",
+                "all steps made",
+                "diverged",
+                "too stiff",
+                "not converged",
+                "no numbers",
+                "panics",
+                "largest gain",
+            ],
+        );
+        for method in Method::all() {
+            let of: Vec<_> =
+                self.ranges.iter().filter(|tally| tally.method == method && tally.refused.is_none()).collect();
+            let sum = |number: &dyn Fn(&super::RangeTally) -> u32| {
+                of.iter().map(|tally| number(tally)).sum::<u32>().to_string()
+            };
+            let conserving = of.iter().filter(|tally| tally.combination.claims().conservative);
+            table.push(vec![
+                method.name.into(),
+                sum(&|tally| tally.tried),
+                sum(&|tally| tally.made),
+                sum(&|tally| tally.undone[0]),
+                sum(&|tally| tally.undone[1]),
+                sum(&|tally| tally.undone[2]),
+                sum(&|tally| tally.not_numbers),
+                sum(&|tally| tally.panics),
+                brief(conserving.map(|tally| tally.gain).fold(0.0, f64::max)),
+            ]);
+        }
+        report
+            .text(
+                "## Every stiffness, step and unit\n\nThe cube, held on one side and undamped, falls under its weight for four \
+                 steps: E from 100 Pa (its own weight is a kilopascal) to 1 GPa, ν from 0 to 0.4999, steps from 0.1 ms to 1 s, in \
+                 metres and in millimetres. Gain: of all energies that are about, gravity's included.",
+            )
+            .table(table)
+    }
+
+    fn told_differently(&self, report: Report) -> Report {
+        let mut table = Table::new(
+            "sameness",
+            &["model and law", "integrator", "displacement", "millimetres", "turned", "renumbered"],
+        );
+        for row in &self.sameness {
+            table.push(vec![
+                row.combination.name(),
+                row.method.into(),
+                brief(row.displacement),
+                brief(row.units),
+                row.turned.map_or("–".into(), brief),
+                brief(row.renumbered),
+            ]);
+        }
+        report
+            .text(
+                "## The same motion told differently\n\nA bar bends under its weight for 0.2 s: in millimetres, turned and shifted \
+                 in twelve ways, with nodes and cells in random order. Largest difference, of the largest displacement (which \
+                 is given over the size). –: the law takes rotations for strain.",
+            )
+            .table(table)
+    }
+
+    fn cut(&self, report: Report) -> Report {
+        let table = |name, cuts: &[Cuts]| {
+            let mut table = Table::new(
+                name,
+                &[
+                    "model and law",
+                    "integrators",
+                    "cuts",
+                    "steps made",
+                    "undone",
+                    "down to nothing",
+                    "left over",
+                    "panics",
+                ],
+            );
+            for combination in Combination::able() {
+                let of: Vec<_> = cuts
+                    .iter()
+                    .filter(|cuts| cuts.combination == combination && !matches!(cuts.end, End::Refused(_)))
+                    .collect();
+                let ended = |end| of.iter().filter(|cuts| cuts.end == end).count().to_string();
+                table.push(vec![
+                    combination.name(),
+                    of.len().to_string(),
+                    of.iter().map(|cuts| cuts.cuts).sum::<usize>().to_string(),
+                    of.iter().map(|cuts| cuts.steps).sum::<u32>().to_string(),
+                    of.iter().map(|cuts| cuts.undone).sum::<u32>().to_string(),
+                    ended(End::Nothing),
+                    ended(End::Leftover),
+                    ended(End::Panicked),
+                ]);
+            }
+            table
+        };
+        report
+            .text("## Cut while inside out\n\nThe mirrored cube, held on one side, loses a cell after each step until none is left.")
+            .table(table("cut-inverted", &self.inverted_cuts))
+            .text(
+                "## Cut down to nothing\n\nA held cube of 10⁵ cells under its weight loses them one by one, at random, with an \
+                 explicit step now and then. Nothing of mass, volume or energy is left in the end, and the world goes on.",
+            )
+            .table(table("cut-to-nothing", &self.cuts_to_nothing))
+    }
+
+    fn single_elements(&self, report: Report) -> Report {
+        let mut table = Table::new(
+            "elements",
+            &[
+                "model and law",
+                "precision",
+                "tried",
+                "refused as flat",
+                "in range",
+                "broken in range",
+                "beyond range",
+                "panics",
+            ],
+        );
+        for tally in &self.elements {
+            let ElementTally { combination, single, tried, refused, in_range, broken, overflown, panics, .. } = tally;
+            table.push(vec![
+                combination.name(),
+                if *single { "single" } else { "double" }.into(),
+                tried.to_string(),
+                refused.to_string(),
+                in_range.to_string(),
+                broken.to_string(),
+                overflown.to_string(),
+                panics.to_string(),
+            ]);
+        }
+        let tried: u64 = self.elements.iter().map(|tally| tally.tried).sum();
+        report
+            .text(format!(
+                "## Single elements\n\n{tried} elements, slivers among them, of sizes down to denormal numbers and up to the largest \
+                 that there are, put in points, lines, planes, mirrors and random shapes: forces, products and energy. Broken: a \
+                 number that is none or infinite although every power of the deformation that the law takes is within the range of \
+                 the precision. Beyond that range numbers overflow, and steps that would are undone."
+            ))
+            .table(table)
+    }
+}
+
+impl Trial {
+    fn why(&self) -> &'static str {
+        match (&self.outcome, self.case.obstacle()) {
+            (Outcome::Refused(why) | Outcome::Undone(why), _) => why,
+            (Outcome::Back, _) | (_, None) => "",
+            (_, Some(Obstacle::Mirror)) => "blind to reflections: take stable-neo-hookean",
+            (_, Some(Obstacle::Symmetry)) => "no direction is better than another",
+            (_, Some(Obstacle::Turned)) => "takes rotations for strain",
+        }
+    }
+
+    fn letter(&self) -> &'static str {
+        match (&self.outcome, self.case.obstacle()) {
+            (Outcome::Back, _) => "✓",
+            (Outcome::Refused(_), _) => "–",
+            (Outcome::Undone(_), _) => "U",
+            (Outcome::NotANumber | Outcome::Panicked, _) => "!",
+            (_, Some(Obstacle::Mirror)) => "M",
+            (_, Some(Obstacle::Symmetry)) => "S",
+            (_, Some(Obstacle::Turned)) => "T",
+            (Outcome::Inverted(_), None) => "I",
+            (Outcome::Elsewhere, None) => "E",
+            (Outcome::Moving, None) => "+",
+        }
+    }
+}

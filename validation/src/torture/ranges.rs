@@ -1,0 +1,136 @@
+//! Stiffness, compressibility, length of steps and units over every range that anybody could think of.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use viscera::world::{BodyObservables, World, WorldConfig};
+
+use super::combination::{Combination, Method, Stiffness, refusal};
+use super::release::undone;
+use super::shapes::EDGE;
+use crate::setting::plane;
+use crate::{Size, ValidationError};
+
+/// Steps made in each setting.
+const STEPS: u32 = 4;
+
+/// What a combination and an integrator did over the ranges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RangeTally {
+    /// The force model of a law on a kind of cells.
+    pub combination: Combination,
+    /// The integrator.
+    pub method: Method,
+    /// Settings tried.
+    pub tried: u32,
+    /// Settings that are refused, as the whole combination is.
+    pub refused: Option<&'static str>,
+    /// Settings in which every step was made.
+    pub made: u32,
+    /// Settings in which a step was undone, with an error that says what to do: diverged, too stiff, not converged.
+    pub undone: [u32; 3],
+    /// Settings in which a number that is none came through.
+    pub not_numbers: u32,
+    /// Panics.
+    pub panics: u32,
+    /// The largest gain of energy in a step, of all energies that were about.
+    pub gain: f64,
+    /// Where that was: E [Pa], ν, step [s], units of length in a metre.
+    pub worst: (f64, f64, f64, f64),
+}
+
+/// One setting.
+#[derive(Clone, Copy, Debug)]
+struct Setting {
+    stiffness: Stiffness,
+    step: f64,
+    /// Units of length in a metre.
+    length: f64,
+}
+
+fn settings(size: Size) -> Vec<Setting> {
+    let (youngs, poissons, steps): (&[f64], &[f64], &[f64]) = match size {
+        Size::Full => (&[1e2, 1e4, 1e6, 1e9], &[0.0, 0.45, 0.4999], &[1e-4, 1e-3, 1e-2, 0.1, 1.0]),
+        Size::Small => (&[1e2, 1e5], &[0.0, 0.4999], &[1e-4, 1.0]),
+    };
+    let mut settings = Vec::new();
+    let mut in_both_units = |stiffness: Stiffness, step: f64| {
+        settings.extend([1.0, 1000.0].map(|length| Setting { stiffness, step, length }));
+    };
+    for &young in youngs {
+        for &poisson in poissons {
+            steps.iter().for_each(|&step| in_both_units(Stiffness { young, poisson }, step));
+        }
+    }
+    if size == Size::Small {
+        // A second of these would be half a million explicit sub-steps.
+        in_both_units(Stiffness { young: 1e9, poisson: 0.4999 }, 1e-4);
+    }
+    settings
+}
+
+/// Lets a held cube fall under its weight in every setting.
+pub(super) fn attempt(combination: Combination, method: Method, size: Size) -> Result<RangeTally, ValidationError> {
+    let mut tally = RangeTally {
+        combination,
+        method,
+        tried: 0,
+        refused: None,
+        made: 0,
+        undone: [0; 3],
+        not_numbers: 0,
+        panics: 0,
+        gain: 0.0,
+        worst: Default::default(),
+    };
+    for setting in settings(size) {
+        tally.tried += 1;
+        match catch_unwind(AssertUnwindSafe(|| fall(setting, size, &mut tally))) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => match refusal(&error) {
+                Some(why) => tally.refused = Some(why),
+                None => return Err(error),
+            },
+            Err(_) => tally.panics += 1,
+        }
+        if tally.refused.is_some() {
+            break;
+        }
+    }
+    Ok(tally)
+}
+
+fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), ValidationError> {
+    let Setting { stiffness: Stiffness { young, poisson }, step, length } = setting;
+    let across = if size == Size::Full { [1, 1, 2] } else { [1; 3] };
+    // Pa = kg/(m s²), kg/m³
+    let stiffness = Stiffness { young: young / length, poisson };
+    let mesh = tally.combination.cells.fill(across, [EDGE * length; 3]);
+    let body = tally.combination.body(mesh, stiffness, 1000.0 / length.powi(3))?.fix(plane(2, 0.0));
+    let gravity = [0.0, -9.81 * length, 0.0];
+    let mut world = World::<f64>::new(WorldConfig { gravity, step, integrator: tally.method.integrator })?;
+    let id = world.add(body)?;
+    let parts = |seen: &BodyObservables| [seen.kinetic_energy, seen.elastic_energy, seen.gravity_energy];
+    let mut before = parts(&world.observe(id));
+    let rest = before[2];
+    for _ in 0..STEPS {
+        if let Err(error) = world.step() {
+            let kind = ["diverged", "too stiff", "not converged"].iter().position(|&name| name == undone(&error));
+            tally.undone[kind.unwrap_or(0)] += 1;
+            return Ok(());
+        }
+        let now = parts(&world.observe(id));
+        if now.iter().any(|part| !part.is_finite()) {
+            tally.not_numbers += 1;
+            return Ok(());
+        }
+        let scale = now[0] + now[1] + (now[2] - rest).abs() + before[0] + before[1] + (before[2] - rest).abs();
+        let gain = (0..3).map(|part| now[part] - before[part]).sum::<f64>();
+        if scale > 0.0 && gain / scale > tally.gain {
+            tally.gain = gain / scale;
+            tally.worst = (young, poisson, step, length);
+        }
+        before = now;
+    }
+    tally.made += 1;
+    Ok(())
+}
