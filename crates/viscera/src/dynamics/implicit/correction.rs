@@ -5,7 +5,7 @@ use super::step::Step;
 use super::tangent::Tangent;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockJacobi, BlockMatrix, Ending, Problem};
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Multigrid, Problem};
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
 const ROUNDINGS: f64 = 8.0;
@@ -46,7 +46,14 @@ impl<T: Scalar> Step<'_, T> {
         if let Some(matrix) = &mut memory.matrix {
             matrix.clear();
         }
-        let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix: memory.matrix.as_mut() };
+        if let Some(multigrid) = &mut memory.multigrid {
+            multigrid.clear();
+        }
+        let mut sink = Sinks {
+            diagonal: &mut memory.preconditioner,
+            multigrid: memory.multigrid.as_mut(),
+            matrix: memory.matrix.as_mut(),
+        };
         for model in &state.models {
             model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
         }
@@ -67,13 +74,14 @@ impl<T: Scalar> Step<'_, T> {
             masses: &memory.masses,
         };
         let stop = self.settings.linear;
-        let report = memory.conjugate_gradient.solve(
-            &mut tangent,
-            &mut memory.preconditioner,
-            &problem,
-            stop,
-            &mut memory.correction,
-        );
+        let (diagonal, solver) = (&mut memory.preconditioner, &mut memory.conjugate_gradient);
+        let report = match &mut memory.multigrid {
+            Some(multigrid) => {
+                let mut cycle = multigrid.set_up(&mut tangent, diagonal, &memory.filters, stiffness, &memory.masses);
+                solver.solve(&mut tangent, &mut cycle, &problem, stop, &mut memory.correction)
+            }
+            None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
+        };
         Solve {
             iterations: report.iterations,
             residual: report.residual,
@@ -84,22 +92,26 @@ impl<T: Scalar> Step<'_, T> {
     }
 }
 
-/// Blocks go to the preconditioner, and to the matrix where there is one.
+/// Blocks go to the diagonal, and to the coarse matrices and the matrix where there are any.
 struct Sinks<'a, T> {
     diagonal: &'a mut BlockJacobi<T>,
+    multigrid: Option<&'a mut Multigrid<T>>,
     matrix: Option<&'a mut BlockMatrix<T>>,
 }
 
 impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
         self.diagonal.add(row, column, block);
+        if let Some(multigrid) = &mut self.multigrid {
+            multigrid.add(row, column, block);
+        }
         if let Some(matrix) = &mut self.matrix {
             matrix.add(row, column, block);
         }
     }
 
     fn keeps_diagonal_only(&self) -> bool {
-        self.matrix.is_none()
+        self.multigrid.is_none() && self.matrix.is_none()
     }
 }
 
