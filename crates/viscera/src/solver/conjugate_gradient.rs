@@ -173,7 +173,7 @@ impl<T: Scalar> ConjugateGradient<T> {
         let of_rhs = preconditioner.squared_norm(&self.residual);
         let of_product = preconditioner.squared_norm(&self.product);
         for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
-            *residual = *residual - product;
+            *residual -= product;
         }
         of_rhs.sqrt() + of_product.sqrt()
     }

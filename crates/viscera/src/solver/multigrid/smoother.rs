@@ -44,7 +44,7 @@ impl<T: Scalar> Vectors<T> {
     pub(super) fn follow(&mut self, level: &mut impl Smoothed<T>) {
         level.apply(&self.direction, &mut self.product);
         for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
-            *residual = *residual - product;
+            *residual -= product;
         }
     }
 }
