@@ -132,7 +132,7 @@ fn the_cycle_is_symmetric_and_positive() {
         |node: usize, phase: f64| Vector::new(wave(node, phase), wave(node, phase + 1.0), wave(node, phase + 2.0));
     let (p, q) = (Vector::new(0.6, 0.0, 0.8), Vector::new(0.0, 1.0, 0.0));
     let kinds = [Filter::Plane(p), Filter::Line(p, q), Filter::Held];
-    let filter = |node: usize| if node % 5 == 0 { kinds[node / 5 % 3] } else { Filter::Free };
+    let filter = |node: usize| if node.is_multiple_of(5) { kinds[node / 5 % 3] } else { Filter::Free };
     let filters: Vec<_> = (0..nodes).map(filter).collect();
     let residual = |phase: f64| -> Vec<Vector> { (0..nodes).map(|n| filters[n].apply(vector(n, phase))).collect() };
     let tissues = [tissue(), uniform(StableNeoHookean::from_young_poisson(10e3, 0.49).unwrap())];
