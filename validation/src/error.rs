@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use viscera::dynamics::quasi_static::StaticError;
 use viscera::material::MaterialError;
+use viscera::mesh::GenerateError;
 use viscera::model::ModelError;
 use viscera::world::{StepError, WorldError};
 
@@ -23,6 +24,9 @@ pub enum ValidationError {
     /// A step was not made.
     #[error(transparent)]
     Step(#[from] StepError),
+    /// A mesh of a study cannot be made: a mistake in the study.
+    #[error(transparent)]
+    Generate(#[from] GenerateError),
     /// A reference mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] viscera_io::ReadError),

@@ -14,6 +14,7 @@ pub mod assembly_crossover;
 pub mod cantilevers;
 pub mod fixed_beam;
 pub mod frequencies;
+pub mod multigrid;
 pub mod nearly_incompressible;
 pub mod step_cost;
 pub mod torture;
@@ -58,6 +59,8 @@ pub enum StudyKind {
     TruthCube,
     /// From how many iterations on the assembled matrix pays.
     AssemblyCrossover,
+    /// Iterations against number of cells, with and without multigrid.
+    Multigrid,
     /// Time per step against number of cells, for every model.
     StepCost,
     /// Every model, law and integrator in shapes, scales and cuts that nothing should survive.
@@ -73,6 +76,7 @@ impl StudyKind {
         Self::NearlyIncompressible,
         Self::TruthCube,
         Self::AssemblyCrossover,
+        Self::Multigrid,
         Self::StepCost,
         Self::Torture,
     ];
@@ -86,6 +90,7 @@ impl StudyKind {
             Self::NearlyIncompressible => "nearly-incompressible",
             Self::TruthCube => "truth-cube",
             Self::AssemblyCrossover => "assembly-crossover",
+            Self::Multigrid => "multigrid",
             Self::StepCost => "step-cost",
             Self::Torture => "torture",
         }
@@ -103,6 +108,7 @@ impl StudyKind {
             Self::NearlyIncompressible => Ok(nearly_incompressible::study(settings.size)?.report()),
             Self::TruthCube => Ok(truth_cube::study(settings)?.report()),
             Self::AssemblyCrossover => Ok(assembly_crossover::study(settings.size)?.report()),
+            Self::Multigrid => Ok(multigrid::study(settings.size)?.report()),
             Self::StepCost => Ok(step_cost::study(settings.size)?.report()),
             Self::Torture => Ok(torture::study(settings.size)?.report()),
         }

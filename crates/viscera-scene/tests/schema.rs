@@ -55,7 +55,7 @@ fn a_written_scene_reads_as_the_same_scene() {
         step = "10 ms"
         substep = "1e-4 s"
         precision = "double"
-        integrator = { kind = "newmark", newton = { tolerance = 1e-6, iterations = 9 }, linear = { tolerance = 1e-9 }, matrix = "assembled", beta = 0.3, gamma = 0.6 }
+        integrator = { kind = "newmark", newton = { tolerance = 1e-6, iterations = 9 }, linear = { tolerance = 1e-9 }, matrix = "assembled", preconditioner = "multigrid", beta = 0.3, gamma = 0.6 }
         output = { interval = "20 ms", camera = { look = [0, 0, -1] } }
 
         [body.a]

@@ -1,11 +1,12 @@
-use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
+use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep};
 
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::{
-    IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, SceneFile, SubstepFile,
+    IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile, SceneFile,
+    SubstepFile,
 };
 
 /// Iterations of the linear solver where the scene gives a tolerance alone.
@@ -31,6 +32,7 @@ pub(super) fn integrator(file: &SceneFile, root: &Site) -> Result<Integrator, Sc
                 ("newton", settings.newton.is_some()),
                 ("linear", settings.linear.is_some()),
                 ("matrix", settings.matrix.is_some()),
+                ("preconditioner", settings.preconditioner.is_some()),
             ];
             only(&site, of_implicit, "`backward-euler`, `newmark`, `bdf2`, `energy-momentum`")?;
             Ok(Integrator::Explicit(match substep {
@@ -92,6 +94,10 @@ fn implicit(file: &IntegratorFile, scheme: Scheme, site: &Site) -> Result<Implic
     settings.matrix = match file.matrix {
         None | Some(MatrixFile::MatrixFree) => MatrixForm::Free,
         Some(MatrixFile::Assembled) => MatrixForm::Assembled,
+    };
+    settings.preconditioner = match file.preconditioner {
+        None | Some(PreconditionerFile::BlockJacobi) => Preconditioning::BlockJacobi,
+        Some(PreconditionerFile::Multigrid) => Preconditioning::Multigrid,
     };
     Ok(settings)
 }

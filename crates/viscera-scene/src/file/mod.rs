@@ -22,7 +22,9 @@ use crate::quantity::{Acceleration, Time};
 pub use body::{BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile, SlideFile};
 pub use curve::{CurveFile, CurvePath};
 pub use instrument::InstrumentFile;
-pub use integrator::{FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName};
+pub use integrator::{
+    FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile,
+};
 pub use law::{FibreFile, LawFile, LawName};
 pub use mesh::{
     CellShape, CutFile, GenerateFile, LengthUnit, MeshFile, PlaceFile, RotateFile, SurfaceFile, VolumeFile,

@@ -62,6 +62,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("substep = \"1e-4 s\"", "substep = \"1 s\""),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", newton = \"full\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", matrix = \"assembled\" }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", preconditioner = \"multigrid\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", beta = 0.3 }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", linear = {} }"),
     ("substep = \"1e-4 s\"", "substep = \"1 ms\"\nintegrator = { kind = \"backward-euler\" }"),
@@ -112,7 +113,7 @@ fn a_part_has_its_own_density() {
 /// Every setting of a scene is one of the engine, and arrives there.
 #[test]
 fn integrators_and_models_are_those_that_the_scene_asks_for() {
-    use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
+    use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
     use viscera::solver::Stop;
     use viscera::world::Integrator;
 
@@ -126,8 +127,15 @@ fn integrators_and_models_are_those_that_the_scene_asks_for() {
     assert_eq!(integrator("kind = \"backward-euler\""), Implicit::default());
     let full = Newton::Full { relative: 1e-6, at_most: 30 };
     let linear = Stop::Iterations(25);
-    let expected = Implicit { scheme: Scheme::BackwardEuler, newton: full, linear, matrix: MatrixForm::Assembled };
-    let text = "newton = { tolerance = 1e-6 }, linear = { iterations = 25 }, matrix = \"assembled\"";
+    let expected = Implicit {
+        scheme: Scheme::BackwardEuler,
+        newton: full,
+        linear,
+        matrix: MatrixForm::Assembled,
+        preconditioner: Preconditioning::Multigrid,
+    };
+    let ways = "matrix = \"assembled\", preconditioner = \"multigrid\"";
+    let text = format!("newton = {{ tolerance = 1e-6 }}, linear = {{ iterations = 25 }}, {ways}");
     assert_eq!(integrator(&format!("kind = \"backward-euler\", {text}")), expected);
     let newmark = Scheme::Newmark { beta: 0.25, gamma: 0.6 };
     assert_eq!(integrator("kind = \"newmark\", gamma = 0.6"), Implicit::accurate(newmark));

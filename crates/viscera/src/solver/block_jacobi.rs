@@ -129,7 +129,7 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
 }
 
 /// Sylvester's criterion, with a margin to singularity that is relative to the block's own size.
-fn is_positive_definite<T: Scalar>(block: &Mat3<T>) -> bool {
+pub(super) fn is_positive_definite<T: Scalar>(block: &Mat3<T>) -> bool {
     let [a, b, _] = block.columns;
     let third = block.trace() / T::from_f64(3.0);
     let minor = a.x * b.y - b.x * a.y;

@@ -17,16 +17,9 @@ impl<T: Scalar> BlockMatrix<T> {
     /// The zero matrix with the pattern of `mesh`, for models whose forces reach over this many `rings` of cells
     /// ([`ForceModel::rings`](crate::model::ForceModel::rings)).
     pub fn new(mesh: &VolumeMesh, rings: usize) -> Self {
-        let mut neighbours = neighbours(mesh);
-        let ring = neighbours.clone();
-        for _ in 1..rings {
-            let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
-            neighbours = neighbours.iter().map(beyond).collect();
-            neighbours.iter_mut().for_each(sort);
-        }
         let mut starts = vec![0];
         let mut columns = Vec::new();
-        for row in &neighbours {
+        for row in &pattern(mesh, rings) {
             columns.extend_from_slice(row);
             starts.push(columns.len() as u32);
         }
@@ -59,6 +52,18 @@ impl<T: Scalar> BlockMatrix<T> {
         let (start, end) = (self.starts[row] as usize, self.starts[row + 1] as usize);
         self.columns[start..end].binary_search(&(column as u32)).ok().map(|offset| start + offset)
     }
+}
+
+/// The nodes within so many rings of cells around each node, itself included, ascending.
+pub(super) fn pattern(mesh: &VolumeMesh, rings: usize) -> Vec<Vec<u32>> {
+    let ring = neighbours(mesh);
+    let mut pattern = ring.clone();
+    for _ in 1..rings {
+        let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
+        pattern = pattern.iter().map(beyond).collect();
+        pattern.iter_mut().for_each(sort);
+    }
+    pattern
 }
 
 /// The nodes that share a cell with each node, itself included, ascending.

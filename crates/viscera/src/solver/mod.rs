@@ -1,5 +1,5 @@
-//! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient, and the seam to
-//! factorisations.
+//! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient with its preconditioners,
+//! and the seam to factorisations.
 
 mod block_jacobi;
 mod block_matrix;
@@ -7,6 +7,7 @@ mod conjugate_gradient;
 mod filter;
 mod iterative;
 mod linear_solver;
+mod multigrid;
 mod preconditioner;
 mod system;
 mod vectors;
@@ -17,6 +18,7 @@ pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, St
 pub use filter::Filter;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
+pub use multigrid::{Cycle, Multigrid};
 pub use preconditioner::{Preconditioner, Size};
 pub use system::System;
 pub(crate) use vectors::{dot, scale_and_add_masses};

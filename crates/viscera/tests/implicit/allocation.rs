@@ -7,12 +7,14 @@ use viscera::model::{Corotational, TensorMass, TotalLagrangian};
 
 use super::support::*;
 
-/// A step allocates nothing, whatever the scheme, the matrix and the model, nor does the first one.
+/// A step allocates nothing, whatever the scheme, the matrix, the preconditioner and the model, nor does the first one.
 #[test]
 fn steps_allocate_nothing() {
     let schemes = [
         Implicit::default(),
         assembled(Implicit::default()),
+        multigrid(Implicit::default()),
+        multigrid(assembled(Implicit::accurate(Scheme::BackwardEuler))),
         Implicit::accurate(Scheme::BackwardEuler),
         Implicit::accurate(Scheme::AVERAGE_ACCELERATION),
         assembled(Implicit::accurate(Scheme::Bdf2)),

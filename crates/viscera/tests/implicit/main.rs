@@ -3,6 +3,7 @@
 mod accuracy;
 mod allocation;
 mod conservation;
+mod multigrid;
 mod practice;
 mod reference;
 mod sameness;

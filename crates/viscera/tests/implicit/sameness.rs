@@ -60,7 +60,9 @@ fn tensor_mass_moves_as_total_lagrangian() {
 /// The same world steps through the same bits, and goes on with them after a snapshot, cuts and past states included.
 #[test]
 fn steps_repeat_bit_by_bit_also_from_a_snapshot() {
-    for settings in [linearised(), full(Scheme::Bdf2, 1e-8), full(Scheme::AVERAGE_ACCELERATION, 1e-8)] {
+    let ways =
+        [linearised(), multigrid(linearised()), full(Scheme::Bdf2, 1e-8), full(Scheme::AVERAGE_ACCELERATION, 1e-8)];
+    for settings in ways {
         let build = || {
             world::<f32>(
                 GRAVITY,

@@ -1,7 +1,7 @@
 //! Bars to move, and ways to measure how they did.
 
 use viscera::body::Body;
-use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Scheme};
+use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::material::{LawFamily, LinearElastic, StVenantKirchhoff, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{Region, TetMesh};
@@ -66,6 +66,10 @@ pub(crate) fn tight() -> Stop {
 
 pub(crate) fn assembled(settings: Implicit) -> Implicit {
     Implicit { matrix: MatrixForm::Assembled, ..settings }
+}
+
+pub(crate) fn multigrid(settings: Implicit) -> Implicit {
+    Implicit { preconditioner: Preconditioning::Multigrid, ..settings }
 }
 
 pub(crate) fn world<T: Precision>(

@@ -5,7 +5,7 @@ use super::step::Step;
 use super::tangent::Tangent;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockJacobi, BlockMatrix, Ending, Problem};
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Multigrid, Problem};
 use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
@@ -47,19 +47,20 @@ impl<T: Scalar> Step<'_, T> {
         }
         let rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
-            match &mut memory.matrix {
-                Some(matrix) => {
-                    matrix.clear();
-                    let mut sink = Sinks { diagonal: &mut memory.preconditioner, matrix };
-                    for model in &state.models {
-                        model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
-                    }
+            if memory.matrix.is_none() && memory.multigrid.is_none() {
+                let blocks = memory.preconditioner.blocks_mut();
+                for model in &state.models {
+                    model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
                 }
-                None => {
-                    let blocks = memory.preconditioner.blocks_mut();
-                    for model in &state.models {
-                        model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
-                    }
+            } else {
+                let mut sink = Sinks {
+                    diagonal: &mut memory.preconditioner,
+                    multigrid: memory.multigrid.as_mut(),
+                    matrix: memory.matrix.as_mut(),
+                };
+                sink.clear();
+                for model in &state.models {
+                    model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
                 }
             }
             let rounding = rounding(memory, &state.positions);
@@ -84,14 +85,14 @@ impl<T: Scalar> Step<'_, T> {
             executor: &executor,
         };
         let stop = self.settings.linear;
-        let report = self.stages.run(Stage::LinearSolve, || {
-            memory.conjugate_gradient.solve(
-                &mut tangent,
-                &mut memory.preconditioner,
-                &problem,
-                stop,
-                &mut memory.correction,
-            )
+        let (diagonal, solver) = (&mut memory.preconditioner, &mut memory.conjugate_gradient);
+        let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
+            Some(multigrid) => {
+                let (filters, masses) = (&memory.filters, &memory.masses);
+                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, stiffness, masses, &executor);
+                solver.solve(&mut tangent, &mut cycle, &problem, stop, &mut memory.correction)
+            }
+            None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
         });
         Solve {
             iterations: report.iterations,
@@ -103,16 +104,33 @@ impl<T: Scalar> Step<'_, T> {
     }
 }
 
-/// Blocks go to the matrix, and those on the diagonal to the preconditioner as well.
+/// Blocks go to the diagonal, and to the coarse matrices and the matrix where there are any.
 struct Sinks<'a, T> {
     diagonal: &'a mut BlockJacobi<T>,
-    matrix: &'a mut BlockMatrix<T>,
+    multigrid: Option<&'a mut Multigrid<T>>,
+    matrix: Option<&'a mut BlockMatrix<T>>,
+}
+
+impl<T: Scalar> Sinks<'_, T> {
+    fn clear(&mut self) {
+        if let Some(multigrid) = &mut self.multigrid {
+            multigrid.clear();
+        }
+        if let Some(matrix) = &mut self.matrix {
+            matrix.clear();
+        }
+    }
 }
 
 impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
         self.diagonal.add(row, column, block);
-        self.matrix.add(row, column, block);
+        if let Some(multigrid) = &mut self.multigrid {
+            multigrid.add(row, column, block);
+        }
+        if let Some(matrix) = &mut self.matrix {
+            matrix.add(row, column, block);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
-use super::{Implicit, MatrixForm};
+use super::{Implicit, MatrixForm, Preconditioning};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter};
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid};
 
 /// What an implicit step computes in; it means nothing between steps.
 #[derive(Clone, Debug)]
@@ -30,6 +30,7 @@ pub struct ImplicitMemory<T> {
     pub(super) masses: Vec<T>,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
+    pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) matrix: Option<BlockMatrix<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
     /// Residuals of Newton's iterations over the forces that balance.
@@ -55,6 +56,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             masses: vec![T::ZERO; nodes],
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
+            multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, rings)),
             matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
             history: Vec::with_capacity(settings.newton.at_most() as usize + 1),

@@ -33,5 +33,5 @@ mod tangent;
 pub use memory::ImplicitMemory;
 pub use report::ImplicitReport;
 pub use scheme::Scheme;
-pub use settings::{Implicit, MatrixForm, Newton};
+pub use settings::{Implicit, MatrixForm, Newton, Preconditioning};
 pub use step::advance;

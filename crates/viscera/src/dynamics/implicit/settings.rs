@@ -14,6 +14,8 @@ pub struct Implicit {
     pub linear: Stop,
     /// Whether the matrix is put together.
     pub matrix: MatrixForm,
+    /// What makes the conjugate gradient fast.
+    pub preconditioner: Preconditioning,
 }
 
 /// How the non-linear equations of a step are solved.
@@ -43,6 +45,20 @@ pub enum MatrixForm {
     Assembled,
 }
 
+/// What makes the conjugate gradient fast; the answer is the same within its tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Preconditioning {
+    /// The blocks on the matrix's diagonal: nearly free, and the number of iterations grows with the number of cells along the body, or
+    /// along the way of a wave in one step where that is shorter.
+    #[default]
+    BlockJacobi,
+    /// Multigrid on lattices over the body ([`Multigrid`](crate::solver::Multigrid)): as many iterations for a million cells
+    /// as for a thousand. One takes as long as six of the other, and each linear solve fifty more to begin with: it pays
+    /// where block-Jacobi takes more than some 150. That is so for steps in which waves cross more than thirty cells
+    /// or so, and for all that comes to rest.
+    Multigrid,
+}
+
 impl Newton {
     /// The most iterations.
     pub(super) fn at_most(self) -> u32 {
@@ -60,6 +76,7 @@ impl Default for Implicit {
             newton: Newton::default(),
             linear: Stop::Tolerance { relative: 1e-4, at_most: 100 },
             matrix: MatrixForm::default(),
+            preconditioner: Preconditioning::default(),
         }
     }
 }
@@ -72,6 +89,7 @@ impl Implicit {
             newton: Newton::Full { relative: 1e-8, at_most: 30 },
             linear: Stop::Tolerance { relative: 1e-6, at_most: 2000 },
             matrix: MatrixForm::Free,
+            preconditioner: Preconditioning::default(),
         }
     }
 

@@ -1,0 +1,178 @@
+//! How many iterations a step of fine tissue takes, with the blocks on the diagonal and with multigrid as the preconditioner: the
+//! first grows with the number of cells along the body, the second does not.
+
+use std::time::Instant;
+
+use viscera::body::Body;
+use viscera::dynamics::implicit::{Implicit, Preconditioning};
+use viscera::material::{LinearElastic, Tissue};
+use viscera::math::Vec3;
+use viscera::mesh::{Liver, Region, TetMesh};
+use viscera::model::Corotational;
+use viscera::solver::Stop;
+use viscera::world::{Integrator, World, WorldConfig};
+
+use crate::plot::{Plot, Scale};
+use crate::report::{Table, brief};
+use crate::setting::plane;
+use crate::{Report, Size, ValidationError};
+
+/// Share to which the residual has to fall.
+const TOLERANCE: f64 = 1e-6;
+/// The two steps [s]: one of play, and one in which everything comes to rest.
+const STEPS: [f64; 2] = [0.01, 1.0];
+/// Bodies above this size take their steps once, smaller ones several times.
+const LARGE: usize = 200_000;
+
+/// What was found.
+pub struct MultigridStudy {
+    /// One for each body, size and step.
+    pub rows: Vec<Row>,
+}
+
+/// One body at one step.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// "cantilever" or "liver".
+    pub body: &'static str,
+    /// Tetrahedra.
+    pub cells: usize,
+    /// Δt [s].
+    pub step: f64,
+    /// With the blocks on the diagonal.
+    pub block_jacobi: Cost,
+    /// With multigrid.
+    pub multigrid: Cost,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug)]
+pub struct Cost {
+    /// Iterations of the conjugate gradient.
+    pub iterations: u32,
+    /// The whole step [ms].
+    pub time: f64,
+}
+
+/// # Errors
+/// [`ValidationError`] where a mesh cannot be made or a step fails.
+pub fn study(size: Size) -> Result<MultigridStudy, ValidationError> {
+    let (across, cells): (&[usize], &[usize]) = match size {
+        Size::Small => (&[3, 6, 9], &[1_000, 5_000, 16_000]),
+        Size::Full => (&[3, 4, 8, 16, 35], &[1_000, 10_000, 100_000, 1_000_000]),
+    };
+    let liver = Liver::new(0.3)?;
+    let mut rows = Vec::new();
+    for &across in across {
+        let mesh = TetMesh::box_grid([across, across, 4 * across], [0.1, 0.1, 0.4]);
+        add(&mut rows, "cantilever", &mesh, &plane(2, 0.0))?;
+    }
+    for &cells in cells {
+        let mesh = TetMesh::from_signed_distance(&liver, TetMesh::edge_for_cells(&liver, cells)?)?;
+        // Where the great vessels enter.
+        let held = Region::Sphere { centre: Vec3::new(0.0, 0.02, -0.03), radius: 0.04 };
+        add(&mut rows, "liver", &mesh, &held)?;
+    }
+    Ok(MultigridStudy { rows })
+}
+
+fn add(rows: &mut Vec<Row>, body: &'static str, mesh: &TetMesh, held: &Region) -> Result<(), ValidationError> {
+    for step in STEPS {
+        let [block_jacobi, multigrid] = [
+            cost(mesh, held, step, Preconditioning::BlockJacobi)?,
+            cost(mesh, held, step, Preconditioning::Multigrid)?,
+        ];
+        rows.push(Row { body, cells: mesh.cells.len(), step, block_jacobi, multigrid });
+    }
+    Ok(())
+}
+
+/// The first step from rest, E = 10 kPa, ν = 0.45, linearised; little gravity, so that one linear solve is the whole answer.
+fn cost(mesh: &TetMesh, held: &Region, step: f64, preconditioner: Preconditioning) -> Result<Cost, ValidationError> {
+    let linear = Stop::Tolerance { relative: TOLERANCE, at_most: 20_000 };
+    let integrator = Integrator::Implicit(Implicit { linear, preconditioner, ..Implicit::default() });
+    let config = WorldConfig { gravity: [0.0, -0.01, 0.0], step, integrator };
+    let tissue = Tissue::uniform(LinearElastic::from_young_poisson(10e3, 0.45)?);
+    let body = Body::new(mesh.clone(), 1000.0).model(Corotational::new(tissue)).fix(held.clone());
+    let mut world = World::<f64>::new(config)?;
+    world.add(body)?;
+    let start = world.snapshot();
+    let mut cost = Cost { iterations: 0, time: f64::MAX };
+    for _ in 0..if mesh.cells.len() > LARGE { 1 } else { 5 } {
+        world.restore(&start)?;
+        let begun = Instant::now();
+        let report = world.step()?;
+        cost.time = cost.time.min(1e3 * begun.elapsed().as_secs_f64());
+        cost.iterations = report.implicit.map_or(0, |report| report.linear_iterations);
+    }
+    Ok(cost)
+}
+
+impl MultigridStudy {
+    /// The rows of a body at a step.
+    pub fn of<'a>(&'a self, body: &'a str, step: f64) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.body == body && row.step == step)
+    }
+
+    /// The page.
+    pub fn report(&self) -> Report {
+        let head = [
+            "body",
+            "tetrahedra",
+            "step [ms]",
+            "iterations, block-Jacobi",
+            "iterations, multigrid",
+            "time, block-Jacobi [ms]",
+            "time, multigrid [ms]",
+            "times faster",
+        ];
+        let mut table = Table::new("steps", &head);
+        for row in &self.rows {
+            let Row { body, cells, step, block_jacobi, multigrid } = row;
+            table.push(vec![
+                (*body).to_owned(),
+                cells.to_string(),
+                brief(1e3 * step),
+                block_jacobi.iterations.to_string(),
+                multigrid.iterations.to_string(),
+                brief(block_jacobi.time),
+                brief(multigrid.time),
+                brief(block_jacobi.time / multigrid.time),
+            ]);
+        }
+        let plot = |name, title: &str, y, value: &dyn Fn(&Cost) -> f64| {
+            let mut plot = Plot {
+                name,
+                title: title.to_owned(),
+                x: "tetrahedra",
+                y,
+                scale: Scale::Logarithmic,
+                curves: Vec::new(),
+            };
+            for body in ["cantilever", "liver"] {
+                for step in STEPS {
+                    let points = |cost: &dyn Fn(&Row) -> Cost| {
+                        self.of(body, step).map(|row| (row.cells as f64, value(&cost(row)))).collect()
+                    };
+                    let name = |way| format!("{body}, {} ms, {way}", brief(1e3 * step));
+                    plot.reference(name("block-Jacobi"), points(&|row| row.block_jacobi));
+                    plot.curve(name("multigrid"), points(&|row| row.multigrid));
+                }
+            }
+            plot
+        };
+        Report::new("Iterations of fine tissue, with and without multigrid")
+            .text(
+                "One step of linearised backward Euler from rest, on corotational tetrahedra of E = 10 kPa, ν = 0.45 and \
+                 1000 kg/m³, in double precision on one core, until the residual has fallen to 1e-6: a cantilever of \
+                 0.1 × 0.1 × 0.4 m and a liver of 0.3 m that is held where its vessels enter. In 10 ms a wave crosses \
+                 6 cm, in 1 s the tissue comes to rest. The time is that of the whole step, with the coarse matrices made \
+                 anew: the best of five, of one above 200 000 tetrahedra.",
+            )
+            .table(table)
+            .plot(plot("iterations", "Iterations to a residual of 1e-6", "iterations", &|cost| {
+                f64::from(cost.iterations)
+            }))
+            .plot(plot("times", "Time of a step", "time [ms]", &|cost| cost.time))
+    }
+}
