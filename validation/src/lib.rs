@@ -69,7 +69,7 @@ pub enum StudyKind {
 
 impl StudyKind {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::FixedBeam,
         Self::Cantilevers,
         Self::Frequencies,
