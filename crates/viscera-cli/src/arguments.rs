@@ -88,6 +88,9 @@ pub(crate) struct RunArguments {
     /// start where there is none yet. Keeps checkpoints as before, unless --checkpoint says otherwise.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Threads to compute on. The results are the same to the last bit; bodies of a few thousand cells gain nothing.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
     /// Say nothing but errors.
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -100,6 +103,9 @@ pub(crate) struct ProfileArguments {
     /// The time that a frame may take, such as "16.7 ms" (a bare number is seconds).
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "16.7 ms")]
     pub(crate) frame: f64,
+    /// Threads to compute on.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
     /// Measure where the time goes, and try no other settings.
     #[arg(long)]
     pub(crate) no_trials: bool,

@@ -50,6 +50,7 @@ pub(crate) struct Profile {
 
 pub(crate) fn profile(arguments: &ProfileArguments) -> Result<(), Failure> {
     let interrupt = Interrupt::listen()?;
+    let executor = crate::run::executor(arguments.threads)?;
     let stopwatch = Stopwatch::default();
     let (open, precision) = stopwatch.time(Cost::Loading, || {
         let open = OpenScene::open(&arguments.scene)?;
@@ -57,8 +58,8 @@ pub(crate) fn profile(arguments: &ProfileArguments) -> Result<(), Failure> {
         Ok((open, precision))
     })?;
     let profile = match precision {
-        file::Precision::Single => run::<f32>(&open, arguments.frame, &stopwatch, &interrupt),
-        file::Precision::Double => run::<f64>(&open, arguments.frame, &stopwatch, &interrupt),
+        file::Precision::Single => run::<f32>(&open, arguments.frame, &executor, &stopwatch, &interrupt),
+        file::Precision::Double => run::<f64>(&open, arguments.frame, &executor, &stopwatch, &interrupt),
     }?;
     terminal::say(&table::text(&profile));
     terminal::say(&format!("\n{}", advice::text(&profile)));
@@ -75,6 +76,7 @@ pub(crate) fn profile(arguments: &ProfileArguments) -> Result<(), Failure> {
 fn run<T: Precision>(
     open: &OpenScene,
     frame: f64,
+    executor: &Executor,
     stopwatch: &Stopwatch,
     interrupt: &Interrupt,
 ) -> Result<Profile, Failure> {
@@ -92,7 +94,7 @@ fn run<T: Precision>(
             break;
         }
         let begin = Instant::now();
-        match built.world.step_observed(&Executor::serial(), stopwatch) {
+        match built.world.step_observed(executor, stopwatch) {
             Ok(report) => {
                 steps.push(begin.elapsed());
                 substeps += u64::from(report.substeps);

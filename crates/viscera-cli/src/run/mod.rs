@@ -15,6 +15,7 @@ mod tally;
 
 use std::path::{Path, PathBuf};
 
+use viscera::executor::Executor;
 use viscera::math::Scalar;
 use viscera_scene::BuiltScene;
 use viscera_scene::file::Precision;
@@ -63,7 +64,8 @@ fn play<T: viscera::model::Precision>(
     if !arguments.quiet {
         tell_notices(&built, &progress);
     }
-    let ending = make_steps(&mut built, &mut recording, checkpoints.as_mut(), &progress, interrupt);
+    let executor = executor(arguments.threads)?;
+    let ending = make_steps(&mut built, &executor, &mut recording, checkpoints.as_mut(), &progress, interrupt);
     progress.finish();
     let ended = ending.and_then(|ending| Ok((recording.finish(&mut built, &ending)?, ending)));
     let (summary, ending) =
@@ -72,6 +74,11 @@ fn play<T: viscera::model::Precision>(
         terminal::say(&tables::tables(&summary));
     }
     report(ending, summary.simulated_time, checkpoints.is_some(), path)
+}
+
+/// The threads that were asked for.
+pub(crate) fn executor(threads: u16) -> Result<Executor, Failure> {
+    Executor::threads(threads.into()).map_err(Failure::problem)
 }
 
 /// Begins at the start, or goes on from the last checkpoint.
@@ -105,6 +112,7 @@ fn set_out<'a, T: viscera::model::Precision>(
 /// Steps until the end of the scene, or what comes before it.
 fn make_steps<T: viscera::model::Precision>(
     built: &mut BuiltScene<T>,
+    executor: &Executor,
     recording: &mut Recording,
     mut checkpoints: Option<&mut Checkpoints>,
     progress: &Progress,
@@ -116,7 +124,7 @@ fn make_steps<T: viscera::model::Precision>(
             ending = Ending::Interrupted;
             break;
         }
-        match recording.clock.time(|| built.world.step()) {
+        match recording.clock.time(|| built.world.step_on(executor)) {
             Ok(report) => recording.record(built, &report)?,
             Err(error) => return Ok(Ending::Failed(error.to_string())),
         }

@@ -54,7 +54,7 @@ fn a_profile_of_implicit_steps_tells_products_from_the_rest_of_the_solve() {
 #[test]
 fn a_profile_of_a_step_that_fails_says_so_and_shows_the_steps_before_it() {
     let desk = Desk::new();
-    let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e6 kN\", 0]]]";
+    let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e15 kN\", 0]]]";
     desk.write("crushed.toml", format!("{CUBE}load = [{{ region = \"y-min\", force = {force} }}]\n"));
     desk.viscera(&["profile", "crushed.toml"]).ends_with(1).says("largest cost").complains("the step is undone");
 }

@@ -194,7 +194,7 @@ fn a_second_run_replaces_the_first_and_leaves_other_files_alone() {
 #[test]
 fn a_step_that_fails_keeps_what_stands_and_says_what_to_change() {
     let desk = Desk::new();
-    let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e6 kN\", 0]]]";
+    let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e15 kN\", 0]]]";
     let crushed = format!("{CUBE}load = [{{ region = \"y-min\", force = {force} }}]\n");
     desk.write("crushed.toml", crushed);
     desk.viscera(&["run", "crushed.toml"])

@@ -3,6 +3,7 @@ use super::{
     PastState, Removals,
 };
 use crate::curve::Curve;
+use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
@@ -251,9 +252,13 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Gravity and loads at `time` on the current positions [N].
     pub(crate) fn update_external_forces(&mut self, time: f64, gravity: Vec3<T>) {
-        for (force, &mass) in self.external_forces.iter_mut().zip(&self.state.masses) {
-            *force = gravity * mass;
-        }
+        let masses = &self.state.masses;
+        let work = |block: usize, NodeBlocks(forces): NodeBlocks<'_, Vec3<T>>| {
+            for (force, &mass) in forces.iter_mut().zip(&masses[block * NODE_BLOCK..]) {
+                *force = gravity * mass;
+            }
+        };
+        self.scratch.executor.each(node_blocks(masses.len()), NodeBlocks(&mut self.external_forces), &work);
         self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
     }
 }

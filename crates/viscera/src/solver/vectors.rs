@@ -49,8 +49,9 @@ pub(crate) fn scale_and_add_masses<T: Scalar>(
     executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
 }
 
+/// a·b over a block of nodes.
 #[inline(always)]
-fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
+pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
     let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<NODES>(), b.as_chunks::<NODES>());
     let mut sums = [T::ZERO; NUMBERS];
     for (a, b) in a.iter().zip(b) {

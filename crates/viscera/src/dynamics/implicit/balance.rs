@@ -2,6 +2,7 @@
 
 use super::Scheme;
 use super::step::Step;
+use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 use crate::stage::Stage;
 
@@ -30,18 +31,9 @@ impl<T: Scalar> Step<'_, T> {
     /// The forces at y = x + θ δ and what they lack to balance.
     pub(super) fn evaluate(&mut self) -> Balance {
         let place = T::from_f64(self.numbers.place);
-        {
-            let (state, memory) = (&mut self.body.state, &*self.memory);
-            let mut moved = false;
-            for node in 0..memory.start.len() {
-                let position = memory.increment[node].mul_add(place, memory.start[node]);
-                moved |= position != state.positions[node];
-                state.positions[node] = position;
-            }
-            if moved {
-                state.positions_changed();
-                self.is_linearized = false;
-            }
+        if self.go_to(place) {
+            self.body.state.positions_changed();
+            self.is_linearized = false;
         }
         if self.settings.scheme == Scheme::EnergyMomentum {
             self.find_mean_forces();
@@ -50,9 +42,31 @@ impl<T: Scalar> Step<'_, T> {
         }
         let time = self.from + self.numbers.place * (self.drive.end - self.from);
         self.update_external_forces(time);
-        self.find_velocities(place);
-        self.find_damping();
+        if self.body.damping > T::ZERO || self.body.stiffness_damping > T::ZERO {
+            self.find_velocities(place);
+            self.find_damping();
+        } else {
+            self.memory.damping.fill(Vec3::ZERO);
+        }
         self.find_lack()
+    }
+
+    /// Moves the body to x + θ δ; gives whether it was anywhere else.
+    fn go_to(&mut self, place: T) -> bool {
+        let (positions, memory) = (&mut self.body.state.positions, &*self.memory);
+        let work = |block: usize, NodeBlocks(positions): NodeBlocks<'_, Vec3<T>>| {
+            let (start, increment) = (&memory.start[block * NODE_BLOCK..], &memory.increment[block * NODE_BLOCK..]);
+            let mut moved = false;
+            for ((position, &start), &increment) in positions.iter_mut().zip(start).zip(increment) {
+                let there = increment.mul_add(place, start);
+                moved |= there != *position;
+                *position = there;
+            }
+            moved
+        };
+        let blocks = node_blocks(positions.len());
+        let executor = &self.body.scratch.executor;
+        executor.fold(blocks, NodeBlocks(positions), &work, &|a, b| a | b).unwrap_or(false)
     }
 
     /// Forces of the energy–momentum scheme between the two ends of the step.
@@ -104,19 +118,26 @@ impl<T: Scalar> Step<'_, T> {
 
     /// R − F − C v − M a of the nodes that forces move.
     fn find_lack(&mut self) -> Balance {
-        let (state, memory) = (&self.body.state, &mut *self.memory);
         let inertia = T::from_f64(self.numbers.inertia / (self.dt * self.dt));
-        let mut squares = [0.0; 4];
-        for node in 0..memory.lack.len() {
-            let external = self.body.external_forces[node];
-            let inertial = (memory.increment[node] - memory.coast[node]) * (inertia * state.masses[node]);
-            memory.lack[node] = external - state.internal_forces[node] - memory.damping[node] - inertial;
-            let forces = [memory.lack[node], inertial, external, state.internal_forces[node]];
-            for (square, force) in squares.iter_mut().zip(forces) {
-                *square += memory.filters[node].apply(force).squared_norm().to_f64();
+        let (body, memory) = (&*self.body, &mut *self.memory);
+        let (increment, coast, damping, filters) = (&memory.increment, &memory.coast, &memory.damping, &memory.filters);
+        let work = |block: usize, NodeBlocks(lacks): NodeBlocks<'_, Vec3<T>>| {
+            let mut squares = [0.0; 4];
+            for (i, lack) in lacks.iter_mut().enumerate() {
+                let node = block * NODE_BLOCK + i;
+                let (external, internal) = (body.external_forces[node], body.state.internal_forces[node]);
+                let inertial = (increment[node] - coast[node]) * (inertia * body.state.masses[node]);
+                *lack = external - internal - damping[node] - inertial;
+                for (square, force) in squares.iter_mut().zip([*lack, inertial, external, internal]) {
+                    *square += filters[node].apply(force).squared_norm().to_f64();
+                }
             }
-        }
-        let [lack, inertial, external, internal] = squares.map(f64::sqrt);
+            squares
+        };
+        let blocks = node_blocks(increment.len());
+        let sums = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|i| a[i] + b[i]);
+        let squares = body.scratch.executor.fold(blocks, NodeBlocks(&mut memory.lack), &work, &sums);
+        let [lack, inertial, external, internal] = squares.unwrap_or_default().map(f64::sqrt);
         Balance { lack, scale: inertial + external + internal }
     }
 }

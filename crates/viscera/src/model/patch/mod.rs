@@ -7,6 +7,7 @@
 mod fan;
 mod partition;
 mod tet_fans;
+mod visitor;
 
 pub(crate) use tet_fans::{Diagonal, Element, Measure, Record, TetFans};
 

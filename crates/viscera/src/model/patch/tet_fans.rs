@@ -1,7 +1,8 @@
 use fearless_simd::{Simd, dispatch};
 
 use super::fan::{Fan, fans};
-use super::{PATCH_NODES, PatchRows, Patches, PerPatch, no_rows};
+use super::visitor::{Keep, Largest, Scatter, ScatterBlocks, Visitor, indices};
+use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
@@ -349,125 +350,6 @@ pub(crate) trait Measure<T: Scalar>: Sync {
     fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S>;
 }
 
-/// Whoever is led along the fans.
-trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
-    /// A batch of fans begins.
-    #[inline(always)]
-    fn begin(&mut self) {}
-    /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring.
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]);
-    /// The batch has ended: nodes of its axis, and the last of the ring.
-    #[inline(always)]
-    fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
-}
-
-/// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
-struct Scatter<'a, T: Scalar, S: Simd, E> {
-    simd: S,
-    element: &'a E,
-    sums: &'a mut PatchRows<T>,
-    /// Force on the end of the axis.
-    end: Vec3<T::Lanes<S>>,
-    /// Sum of the forces on the ring: what is left to make them all zero acts on the origin.
-    ring: Vec3<T::Lanes<S>>,
-    /// What the last tetrahedron exerts on the node of the ring that it shares with the next.
-    carried: Vec3<T::Lanes<S>>,
-}
-
-impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, E> {
-    #[inline(always)]
-    fn begin(&mut self) {
-        let zero = Vec3::splat(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.end, self.ring, self.carried) = (zero, zero, zero);
-    }
-
-    #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]) {
-        let [end, ring, next] = self.element.forces(simd, slot, edges).columns;
-        let ring = self.carried + ring;
-        self.end += end;
-        self.ring += ring;
-        self.carried = next;
-        add(ring, from, self.sums);
-    }
-
-    #[inline(always)]
-    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add(self.carried, last, self.sums);
-        add(self.end, end, self.sums);
-        add(-(self.ring + self.carried + self.end), origin, self.sums);
-    }
-}
-
-/// Adds up blocks as [`Scatter`] does forces, but that those of the origin do not follow from the others.
-struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
-    simd: S,
-    element: &'a E,
-    sums: &'a mut [PatchRows<T>; 2],
-    origin: Sym3<T::Lanes<S>>,
-    end: Sym3<T::Lanes<S>>,
-    carried: Sym3<T::Lanes<S>>,
-}
-
-impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, S, E> {
-    #[inline(always)]
-    fn begin(&mut self) {
-        let zero = Sym3::diagonal(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.origin, self.end, self.carried) = (zero, zero, zero);
-    }
-
-    #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: &[u32]) {
-        let [origin, end, ring, next] = self.element.blocks(simd, slot, &edges[0]);
-        self.origin = self.origin + origin;
-        self.end = self.end + end;
-        add_block(self.carried + ring, from, self.sums);
-        self.carried = next;
-    }
-
-    #[inline(always)]
-    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add_block(self.carried, last, self.sums);
-        add_block(self.end, end, self.sums);
-        add_block(self.origin, origin, self.sums);
-    }
-}
-
-#[inline(always)]
-fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
-    add(Vec3::new(block.xx, block.yy, block.zz), nodes, &mut sums[0]);
-    add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
-}
-
-/// Writes rows, slot by slot.
-struct Keep<'a, T, R> {
-    record: &'a R,
-    values: &'a mut [T],
-    first: usize,
-    block: usize,
-}
-
-impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
-    #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
-        let start = (slot - self.first) * self.block;
-        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
-    }
-}
-
-/// Keeps the largest number.
-struct Largest<'a, M, V> {
-    measure: &'a M,
-    value: V,
-}
-
-impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
-    #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
-        self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
-    }
-}
-
 /// Sorts fans so that the lanes of a batch are far from each other: neighbours share nodes, and a force that is added to a
 /// node has to wait for the one before.
 fn lanes_apart(fans: Vec<Fan>, lanes: usize) -> Vec<Fan> {
@@ -487,16 +369,6 @@ fn ring_node(fan: &Fan, place: usize) -> u32 {
     let last = fan.ring.len() - 1;
     let beyond = place.saturating_sub(last);
     fan.ring[place.min(last) - beyond % 2]
-}
-
-/// Numbers of the nodes of all lanes, modulo the size of a patch: the compiler sees that they are good.
-#[inline(always)]
-fn indices(nodes: &[u32], lanes: usize) -> [u32; MAX_LANES] {
-    let mut indices = [0; MAX_LANES];
-    for lane in 0..lanes {
-        indices[lane] = nodes[lane] % PATCH_NODES as u32;
-    }
-    indices
 }
 
 #[inline(always)]
@@ -520,10 +392,4 @@ fn minus<R: Real, const FIELDS: usize>(mut places: [Vec3<R>; FIELDS], origin: &[
         places[field] -= origin[field];
     }
     places
-}
-
-#[inline(always)]
-fn add<T: Scalar, S: Simd, L: Lanes<T, S>>(force: Vec3<L>, nodes: &[u32], sums: &mut PatchRows<T>) {
-    let indices = indices(nodes, T::LANES);
-    L::scatter_add(force.to_array(), &indices[..T::LANES], sums);
 }

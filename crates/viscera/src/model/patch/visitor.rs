@@ -1,0 +1,142 @@
+//! What loops do along the fans of a patch: add up forces or blocks, keep numbers, look for the largest.
+
+use fearless_simd::Simd;
+
+use super::tet_fans::{Diagonal, Element, Measure, Record};
+use super::{PATCH_NODES, PatchRows};
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
+
+/// Whoever is led along the fans.
+pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
+    /// A batch of fans begins.
+    #[inline(always)]
+    fn begin(&mut self) {}
+    /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring.
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]);
+    /// The batch has ended: nodes of its axis, and the last of the ring.
+    #[inline(always)]
+    fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
+}
+
+/// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
+pub(super) struct Scatter<'a, T: Scalar, S: Simd, E> {
+    pub(super) simd: S,
+    pub(super) element: &'a E,
+    pub(super) sums: &'a mut PatchRows<T>,
+    /// Force on the end of the axis.
+    pub(super) end: Vec3<T::Lanes<S>>,
+    /// Sum of the forces on the ring: what is left to make them all zero acts on the origin.
+    pub(super) ring: Vec3<T::Lanes<S>>,
+    /// What the last tetrahedron exerts on the node of the ring that it shares with the next.
+    pub(super) carried: Vec3<T::Lanes<S>>,
+}
+
+impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, E> {
+    #[inline(always)]
+    fn begin(&mut self) {
+        let zero = Vec3::splat(T::Lanes::<S>::splat(self.simd, T::ZERO));
+        (self.end, self.ring, self.carried) = (zero, zero, zero);
+    }
+
+    #[inline(always)]
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]) {
+        let [end, ring, next] = self.element.forces(simd, slot, edges).columns;
+        let ring = self.carried + ring;
+        self.end += end;
+        self.ring += ring;
+        self.carried = next;
+        add(ring, from, self.sums);
+    }
+
+    #[inline(always)]
+    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
+        add(self.carried, last, self.sums);
+        add(self.end, end, self.sums);
+        add(-(self.ring + self.carried + self.end), origin, self.sums);
+    }
+}
+
+/// Adds up blocks as [`Scatter`] does forces, but that those of the origin do not follow from the others.
+pub(super) struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
+    pub(super) simd: S,
+    pub(super) element: &'a E,
+    pub(super) sums: &'a mut [PatchRows<T>; 2],
+    pub(super) origin: Sym3<T::Lanes<S>>,
+    pub(super) end: Sym3<T::Lanes<S>>,
+    pub(super) carried: Sym3<T::Lanes<S>>,
+}
+
+impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, S, E> {
+    #[inline(always)]
+    fn begin(&mut self) {
+        let zero = Sym3::diagonal(T::Lanes::<S>::splat(self.simd, T::ZERO));
+        (self.origin, self.end, self.carried) = (zero, zero, zero);
+    }
+
+    #[inline(always)]
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: &[u32]) {
+        let [origin, end, ring, next] = self.element.blocks(simd, slot, &edges[0]);
+        self.origin = self.origin + origin;
+        self.end = self.end + end;
+        add_block(self.carried + ring, from, self.sums);
+        self.carried = next;
+    }
+
+    #[inline(always)]
+    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
+        add_block(self.carried, last, self.sums);
+        add_block(self.end, end, self.sums);
+        add_block(self.origin, origin, self.sums);
+    }
+}
+
+#[inline(always)]
+fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
+    add(Vec3::new(block.xx, block.yy, block.zz), nodes, &mut sums[0]);
+    add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
+}
+
+/// Writes rows, slot by slot.
+pub(super) struct Keep<'a, T, R> {
+    pub(super) record: &'a R,
+    pub(super) values: &'a mut [T],
+    pub(super) first: usize,
+    pub(super) block: usize,
+}
+
+impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
+    #[inline(always)]
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
+        let start = (slot - self.first) * self.block;
+        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
+    }
+}
+
+/// Keeps the largest number.
+pub(super) struct Largest<'a, M, V> {
+    pub(super) measure: &'a M,
+    pub(super) value: V,
+}
+
+impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
+    #[inline(always)]
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
+        self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
+    }
+}
+
+/// Numbers of the nodes of all lanes, modulo the size of a patch: the compiler sees that they are good.
+#[inline(always)]
+pub(super) fn indices(nodes: &[u32], lanes: usize) -> [u32; MAX_LANES] {
+    let mut indices = [0; MAX_LANES];
+    for lane in 0..lanes {
+        indices[lane] = nodes[lane] % PATCH_NODES as u32;
+    }
+    indices
+}
+
+#[inline(always)]
+fn add<T: Scalar, S: Simd, L: Lanes<T, S>>(force: Vec3<L>, nodes: &[u32], sums: &mut PatchRows<T>) {
+    let indices = indices(nodes, T::LANES);
+    L::scatter_add(force.to_array(), &indices[..T::LANES], sums);
+}
