@@ -119,7 +119,7 @@ mod tests {
             [body.a]
             mesh = { file = "a.msh" }
             density = 1000
-            law = { kind = "transverse-linear", young = 1, poisson = 0.3, fibre = { file = "fibres.csv", young = 2 } }
+            law = { kind = "linear", young = 1, poisson = 0.3, fibre = { file = "fibres.csv", young = 2 } }
             [body.b]
             mesh = { surface = "b.stl", edge = 0.01 }
             density = 1000

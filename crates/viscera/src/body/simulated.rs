@@ -44,6 +44,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) frequency: Box<dyn FrequencyBound<T>>,
     pub(crate) external_forces: Vec<Vec3<T>>,
     pub(crate) scratch: Scratch<T>,
+    /// Whether the models are prepared for products at the positions and cells of the forces, if those are current.
+    pub(crate) is_linearized: bool,
     /// Memory of explicit steps for the nodes that are not free.
     pub(crate) driven: Vec<Driven<T>>,
     pub(crate) backup: MotionBackup<T>,
@@ -133,6 +135,7 @@ impl<T: Scalar> SimulatedBody<T> {
             prescribed: curves,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
+            is_linearized: false,
             driven: Vec::with_capacity(mesh.nodes().len()),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
@@ -234,10 +237,40 @@ impl<T: Scalar> SimulatedBody<T> {
         if std::mem::replace(&mut state.forces_are_current, true) {
             return;
         }
+        self.is_linearized = false;
         state.internal_forces.fill(Vec3::ZERO);
         for model in &state.models {
             stages.run(Stage::Forces(model.name()), || {
                 model.add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
+            });
+        }
+    }
+
+    /// Brings internal forces and what products need up to date together, which is less work than one after the other. Where only
+    /// the forces are current they are found again: the bits of a step must not depend on who looked at them before.
+    pub(crate) fn update_forces_and_linearize(&mut self, stages: Stages) {
+        if self.state.forces_are_current && self.is_linearized {
+            return;
+        }
+        self.is_linearized = false;
+        self.linearize(stages);
+        let state = &mut self.state;
+        state.internal_forces.fill(Vec3::ZERO);
+        for model in &state.models {
+            stages.run(Stage::Forces(model.name()), || {
+                model.add_forces_linearized(&state.positions, &mut self.scratch, &mut state.internal_forces);
+            });
+        }
+        state.forces_are_current = true;
+    }
+
+    /// Prepares the models for products at the positions, once for all of them.
+    pub(crate) fn linearize(&mut self, stages: Stages) {
+        if !std::mem::replace(&mut self.is_linearized, true) {
+            stages.run(Stage::Linearisation, || {
+                for model in &self.state.models {
+                    model.linearize(&self.state.positions, &mut self.scratch);
+                }
             });
         }
     }

@@ -55,6 +55,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
         0
     }
 
+    /// [`ForceModel::add_forces`] at the `x` of the last [`ForceModel::linearize`], for models that know most of it then.
+    fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.add_forces(x, scratch, out);
+    }
+
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 

@@ -98,6 +98,7 @@ impl<T: Scalar> World<T> {
     pub(super) fn undo(&mut self) {
         for body in &mut self.bodies {
             body.backup.put_back(&mut body.state);
+            body.is_linearized = false;
         }
         self.move_tips(self.time());
     }

@@ -18,7 +18,7 @@ pub(super) struct Balance {
 impl<T: Scalar> Step<'_, T> {
     /// What the forces at the beginning lack to balance: mass times acceleration.
     pub(super) fn balance_at_start(&mut self) {
-        self.body.update_internal_forces(self.stages);
+        self.body.update_forces_and_linearize(self.stages);
         self.update_external_forces(self.from);
         self.memory.nodal.copy_from_slice(&self.memory.velocities);
         self.find_damping();
@@ -33,12 +33,12 @@ impl<T: Scalar> Step<'_, T> {
         let place = T::from_f64(self.numbers.place);
         if self.go_to(place) {
             self.body.state.positions_changed();
-            self.is_linearized = false;
+            self.body.is_linearized = false;
         }
         if self.settings.scheme == Scheme::EnergyMomentum {
             self.find_mean_forces();
         } else {
-            self.body.update_internal_forces(self.stages);
+            self.body.update_forces_and_linearize(self.stages);
         }
         let time = self.from + self.numbers.place * (self.drive.end - self.from);
         self.update_external_forces(time);
@@ -99,7 +99,7 @@ impl<T: Scalar> Step<'_, T> {
     /// C times the velocities in `nodal`, with K at the current positions.
     fn find_damping(&mut self) {
         if self.body.stiffness_damping > T::ZERO {
-            self.linearize();
+            self.body.linearize(self.stages);
         }
         let (state, memory) = (&self.body.state, &mut *self.memory);
         memory.damping.fill(Vec3::ZERO);

@@ -23,20 +23,9 @@ pub(super) struct Solve {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Prepares the models for products at the positions, once for all of them.
-    pub(super) fn linearize(&mut self) {
-        if !std::mem::replace(&mut self.is_linearized, true) {
-            self.stages.run(Stage::Linearisation, || {
-                for model in &self.body.state.models {
-                    model.linearize(&self.body.state.positions, &mut self.body.scratch);
-                }
-            });
-        }
-    }
-
     /// Solves for the correction of δ; it holds the guess.
     pub(super) fn correct(&mut self) -> Solve {
-        self.linearize();
+        self.body.linearize(self.stages);
         let (numbers, dt) = (self.numbers, self.dt);
         let (alpha, beta) = (self.body.stiffness_damping.to_f64(), self.body.damping.to_f64());
         let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));

@@ -18,7 +18,7 @@ pub fn advance<T: Scalar>(
     stages: Stages,
 ) -> ImplicitReport {
     let numbers = settings.scheme.numbers(body.state.past.is_known);
-    let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages, is_linearized: false };
+    let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages };
     step.begin();
     let report = match settings.newton {
         Newton::Linearised => step.solve_linearised(),
@@ -38,8 +38,6 @@ pub(super) struct Step<'a, T: Scalar> {
     pub(super) dt: f64,
     pub(super) drive: &'a Drive<'a, T>,
     pub(super) stages: Stages<'a>,
-    /// Whether the models are prepared for products at the positions.
-    pub(super) is_linearized: bool,
 }
 
 impl<T: Scalar> Step<'_, T> {
@@ -48,6 +46,7 @@ impl<T: Scalar> Step<'_, T> {
         self.memory.start.copy_from_slice(&self.body.state.positions);
         self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
+        self.body.is_linearized &= self.body.state.forces_are_current;
         if self.settings.scheme.needs_acceleration() {
             self.balance_at_start();
         }

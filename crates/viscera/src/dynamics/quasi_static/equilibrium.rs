@@ -131,6 +131,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     fn assemble(&mut self, share: f64) {
         self.system.matrix.clear();
         let body = &mut *self.body;
+        body.is_linearized = false;
         let (state, mut sink) = (&body.state, Widen(&mut self.system.matrix));
         for model in &state.models {
             model.linearize(&state.positions, &mut body.scratch);

@@ -152,6 +152,11 @@ impl Formulation {
         }
     }
 
+    /// Whether the forces are linear in the frame that turns with the cell: those of B and V at rest are.
+    pub(super) fn is_linear_in_its_frame(self) -> bool {
+        self.strain == StrainDisplacement::AtRest && self.volume == IntegrationVolume::Initial
+    }
+
     /// R A and s: with g = √(s V0) R A α, the frozen product is Σ_j [R C Rᵀ : sym(dx_j g_jᵀ)] g_i, with the law C turned by
     /// R: what linear elasticity costs.
     #[inline(always)]

@@ -168,6 +168,9 @@ struct FrozenProduct<'a, T: Scalar> {
     tets: &'a CorotationalTets<T>,
     linearization: &'a [T],
 }
+/// Forces from turned gradients: with those of a body at rest, √V I, taken off, D gᵀ is √V (F Rᵀ − I), the strain in the turned
+/// frame.
+struct FrozenForces<'a, T: Scalar>(FrozenProduct<'a, T>);
 /// Turns the gradients.
 struct Turning<'a, T: Scalar>(&'a CorotationalTets<T>);
 
@@ -212,6 +215,16 @@ impl<T: Scalar> Element<T, 1> for FrozenProduct<'_, T> {
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         let Turned { hooke, gradients } = self.load(simd, slot);
         let strain = (edges[0] * gradients.transpose()).symmetric_part();
+        times(hooke.stress(strain), &gradients)
+    }
+}
+
+impl<T: Scalar> Element<T, 1> for FrozenForces<'_, T> {
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        let Turned { hooke, gradients } = self.0.load(simd, slot);
+        let volume = T::Lanes::<S>::load(simd, &self.0.tets.constants.block(slot)[VOLUME * T::LANES..]);
+        let strain = (edges[0] * gradients.transpose()).symmetric_part() - Sym3::diagonal(volume.sqrt());
         times(hooke.stress(strain), &gradients)
     }
 }
@@ -264,6 +277,17 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.order.add([x], &Forces(self), scratch, out);
+    }
+
+    fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        if scratch.is_linearized && self.formulation.is_linear_in_its_frame() {
+            let linearization = std::mem::take(&mut scratch.linearization);
+            let frozen = FrozenForces(FrozenProduct { tets: self, linearization: &linearization });
+            self.order.add([x], &frozen, scratch, out);
+            scratch.linearization = linearization;
+        } else {
+            self.add_forces(x, scratch, out);
+        }
     }
 
     fn linearization_len(&self) -> usize {

@@ -50,6 +50,7 @@ impl<T: Scalar> World<T> {
         self.steps = snapshot.steps;
         for (body, of_body) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             body.state = of_body.state.clone();
+            body.is_linearized = false;
             body.frequency = of_body.frequency.clone_box();
         }
         self.move_tips(self.time());
