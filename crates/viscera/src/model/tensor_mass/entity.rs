@@ -49,12 +49,13 @@ fn tensor<R: Real>(c: &[R], first: usize) -> Mat3<R> {
 
 /// The numbers of an entity in the order in which they are stored, zeros behind them.
 fn numbers(tensor: Option<Mat3<f64>>, vectors: &[Vec3<f64>], scalars: &[f64]) -> [f64; MAX_COLUMNS] {
-    let tensor = tensor.into_iter().flat_map(|t| t.columns);
-    let values = tensor.chain(vectors.iter().copied()).flat_map(Vec3::to_array).chain(scalars.iter().copied());
     let mut numbers = [0.0; MAX_COLUMNS];
-    for (number, value) in numbers.iter_mut().zip(values) {
-        *number = value;
+    let mut next = 0;
+    for column in tensor.iter().flat_map(|tensor| &tensor.columns).chain(vectors) {
+        numbers[next..next + 3].copy_from_slice(&column.to_array());
+        next += 3;
     }
+    numbers[next..next + scalars.len()].copy_from_slice(scalars);
     numbers
 }
 
