@@ -18,8 +18,8 @@ use crate::units::with_prefix;
 
 pub(super) fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
     let (care, tolerance, duration) = match arguments.quick {
-        true => (Care { windows: 3, window: 0.1 }, 0.1, "about half a minute"),
-        false => (Care { windows: 7, window: 0.3 }, 0.02, "about two minutes"),
+        true => (Care { windows: 3, window: 0.1 }, 0.1, "about three minutes"),
+        false => (Care { windows: 7, window: 0.3 }, 0.02, "some six minutes"),
     };
     let cores = available_parallelism().map_or(1, NonZero::get);
     say(&format!(
