@@ -93,11 +93,11 @@ impl<T: Scalar> SimulatedBody<T> {
         check_density(&name, &density, mesh.cell_count())?;
         let recipe = model.ok_or_else(|| BodyError::NoModel { body: body() })?;
         let model_error = |source| BodyError::Model { body: body(), source };
-        let plan = ModelPlan { recipe, density, keep_volume };
-        let Models { forces: models, frequency } = plan.build(&mesh).map_err(model_error)?;
         if keep_volume != 0.0 && matches!(mesh, VolumeMesh::Hex(_)) {
             return Err(BodyError::KeepVolumeOnHexahedra { body: body() });
         }
+        let plan = ModelPlan { recipe, density, keep_volume };
+        let Models { forces: models, frequency } = plan.build(&mesh).map_err(model_error)?;
 
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };

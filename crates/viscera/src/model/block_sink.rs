@@ -30,6 +30,29 @@ impl<T: Scalar> BlockSink<T> for DiagonalSink<'_, T> {
     }
 }
 
+/// Gives the blocks of a tetrahedron to `sink`, column by column: `product` makes the forces on the corners 1, 2, 3 of how the
+/// edges change.
+pub(crate) fn add_tet_blocks<T: Scalar>(
+    corners: [u32; 4],
+    sink: &mut dyn BlockSink<T>,
+    product: impl Fn(&Mat3<T>) -> Mat3<T>,
+) {
+    for corner in 0..4 {
+        let columns = [0, 1, 2].map(|axis| {
+            let mut ends = [Vec3::ZERO; 4];
+            ends[corner][axis] = T::ONE;
+            let [f1, f2, f3] =
+                product(&Mat3::from_columns(ends[1] - ends[0], ends[2] - ends[0], ends[3] - ends[0])).columns;
+            [-(f1 + f2 + f3), f1, f2, f3]
+        });
+        for p in 0..4 {
+            if p == corner || !sink.keeps_diagonal_only() {
+                sink.add(corners[p], corners[corner], Mat3 { columns: columns.map(|forces| forces[p]) });
+            }
+        }
+    }
+}
+
 /// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
 /// corner `corner` along `axis`. The batch holds `elements` elements, the lanes beyond are padding.
 #[inline(always)]

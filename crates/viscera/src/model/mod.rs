@@ -88,8 +88,8 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
         true
     }
 
-    /// Rows for the copies of nodes that it sums forces or blocks in, which the scratch should have room for.
-    fn copies(&self) -> usize {
+    /// How many rows of the scratch it sums forces and blocks in.
+    fn sum_rows(&self) -> usize {
         0
     }
 
@@ -122,8 +122,8 @@ pub struct Scratch<T> {
     pub(crate) direction: Vec<[T; 4]>,
     /// Sums of forces.
     pub(crate) forces: Vec<[T; 4]>,
-    /// Sums of forces on the copies of nodes in patches.
-    copies: Vec<[T; 4]>,
+    /// Sums of forces and blocks on the copies of nodes in patches.
+    sums: Vec<[T; 4]>,
     /// What a model keeps for products; the one model of a body that does.
     pub(crate) linearization: Vec<T>,
     /// Whether it has been filled.
@@ -140,7 +140,7 @@ impl<T: Scalar> Scratch<T> {
             nodal: rows(),
             direction: rows(),
             forces: rows(),
-            copies: Vec::new(),
+            sums: Vec::new(),
             linearization: Vec::new(),
             is_linearized: false,
             executor: Executor::serial(),
@@ -155,16 +155,16 @@ impl<T: Scalar> Scratch<T> {
     /// Scratch for a body of `nodes` nodes, with room for all that its models keep: nothing is allocated later.
     pub fn for_models(nodes: usize, models: &[Box<dyn ForceModel<T>>]) -> Self {
         let kept = models.iter().map(|model| model.linearization_len()).max().unwrap_or(0);
-        let copies = models.iter().map(|model| model.copies()).max().unwrap_or(0);
-        Self { linearization: vec![T::ZERO; kept], copies: vec![[T::ZERO; 4]; copies], ..Self::new(nodes) }
+        let sums = models.iter().map(|model| model.sum_rows()).max().unwrap_or(0);
+        Self { linearization: vec![T::ZERO; kept], sums: vec![[T::ZERO; 4]; sums], ..Self::new(nodes) }
     }
 
-    /// Who computes, and room for sums on `len` copies of nodes; scratch made for the body's models has it already.
-    pub(crate) fn copies(&mut self, len: usize) -> (&Executor, &mut [[T; 4]]) {
-        if self.copies.len() < len {
-            self.copies.resize(len, [T::ZERO; 4]);
+    /// `len` rows to sum in, and beside them what was kept for products; scratch made for the body's models has the room already.
+    pub(crate) fn sums(&mut self, len: usize) -> (Sums<'_, T>, &[T]) {
+        if self.sums.len() < len {
+            self.sums.resize(len, [T::ZERO; 4]);
         }
-        (&self.executor, &mut self.copies[..len])
+        (Sums { executor: &self.executor, rows: &mut self.sums[..len] }, &self.linearization)
     }
 
     /// Fills the places with `x` and clears the forces.
@@ -189,18 +189,12 @@ impl<T: Scalar> Scratch<T> {
         &mut self.linearization
     }
 
-    /// The places, and room for `len` numbers that products will need; scratch made for the body's models has it already.
-    pub(crate) fn start_linearization(&mut self, len: usize) -> (&[[T; 4]], &mut [T]) {
+    /// Who computes, the places, and room for `len` numbers that products will need; scratch made for the body's models has it
+    /// already.
+    pub(crate) fn start_linearization(&mut self, len: usize) -> (&Executor, &[[T; 4]], &mut [T]) {
         self.linearization.resize(len, T::ZERO);
         self.is_linearized = true;
-        (&self.nodal, &mut self.linearization)
-    }
-
-    /// The same for models that read the places for themselves: who computes, and the room.
-    pub(crate) fn start_recording(&mut self, len: usize) -> (&Executor, &mut [T]) {
-        self.linearization.resize(len, T::ZERO);
-        self.is_linearized = true;
-        (&self.executor, &mut self.linearization)
+        (&self.executor, &self.nodal, &mut self.linearization)
     }
 
     /// Adds the forces to `out`.
@@ -210,6 +204,12 @@ impl<T: Scalar> Scratch<T> {
             *out += Vec3::new(x, y, z);
         }
     }
+}
+
+/// Who sums, and where.
+pub(crate) struct Sums<'a, T> {
+    pub(crate) executor: &'a Executor,
+    pub(crate) rows: &'a mut [[T; 4]],
 }
 
 fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use fearless_simd::Simd;
 
+use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::patch::{Diagonal, Element, Measure, TetFans};
 use super::{BlockSink, ModelError, Scratch};
@@ -147,9 +148,9 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
         self.order.bytes() + self.constants.bytes()
     }
 
-    /// Rows that the scratch should have room for: those of blocks.
-    pub(crate) fn copies(&self) -> usize {
-        2 * self.order.copies()
+    /// Rows that the loop sums in.
+    pub(crate) fn sum_rows(&self) -> usize {
+        self.order.sum_rows()
     }
 
     pub(crate) fn remove(&mut self, cells: &[u32]) {
@@ -222,6 +223,8 @@ impl<T: Scalar, K: TetKernel> Element<T, 2> for Product<'_, T, K> {
 }
 
 impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
+    const IS_WIDE: bool = false;
+
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
         K::mean_forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0], &edges[1])
@@ -229,10 +232,7 @@ impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
 }
 
 impl<T: Scalar, K: TetKernel> Diagonal<T> for TetLoop<T, K> {
-    #[inline(always)]
-    fn is_wide(&self) -> bool {
-        K::HAS_DIAGONAL
-    }
+    const IS_WIDE: bool = K::HAS_DIAGONAL;
 
     #[inline(always)]
     fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
@@ -242,11 +242,11 @@ impl<T: Scalar, K: TetKernel> Diagonal<T> for TetLoop<T, K> {
 
 impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(crate) fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.order.add([x], &Forces(self), scratch, out);
+        self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
     }
 
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.order.add([x, dx], &Product(self), scratch, out);
+        self.order.add([x, dx], &Product(self), scratch.sums(self.sum_rows()).0, out);
     }
 
     pub(crate) fn add_mean_forces(
@@ -256,32 +256,19 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         scratch: &mut Scratch<T>,
         out: &mut [Vec3<T>],
     ) {
-        self.order.add_baseline([from, to], &Mean(self), scratch, out);
+        self.order.add([from, to], &Mean(self), scratch.sums(self.sum_rows()).0, out);
     }
 
     pub(crate) fn add_blocks(&self, x: &[Vec3<T>], sink: &mut dyn BlockSink<T>) {
         for tet in self.order.tetrahedra().filter(|tet| !tet.is_padding) {
             let constants = self.constants_of::<T>(tet.row);
             let d = edge_matrix(x, tet.corners);
-            for corner in 0..4 {
-                let columns = [0, 1, 2].map(|axis| {
-                    let mut ends = [Vec3::ZERO; 4];
-                    ends[corner][axis] = T::ONE;
-                    let dd = Mat3::from_columns(ends[1] - ends[0], ends[2] - ends[0], ends[3] - ends[0]);
-                    K::product(&constants[..K::CONSTANTS], &d, &dd).columns
-                });
-                let [x, y, z] = columns.map(|[f1, f2, f3]| [-(f1 + f2 + f3), f1, f2, f3]);
-                for p in 0..4 {
-                    if p == corner || !sink.keeps_diagonal_only() {
-                        sink.add(tet.corners[p], tet.corners[corner], Mat3::from_columns(x[p], y[p], z[p]));
-                    }
-                }
-            }
+            add_tet_blocks(tet.corners, sink, |dd| K::product(&constants[..K::CONSTANTS], &d, dd));
         }
     }
 
     pub(crate) fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        self.order.add_diagonal(x, self, scratch, out);
+        self.order.add_diagonal(x, self, scratch.sums(self.sum_rows()).0, out);
     }
 
     /// Sum of the energies [J], element by element in double precision.

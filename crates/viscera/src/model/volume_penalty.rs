@@ -111,8 +111,8 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
         self.tets.remove(cells);
     }
 
-    fn copies(&self) -> usize {
-        self.tets.copies()
+    fn sum_rows(&self) -> usize {
+        self.tets.sum_rows()
     }
 
     fn bytes(&self) -> usize {

@@ -182,7 +182,7 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
         if self.formulation.tangent == Tangent::Frozen {
             scratch.start(x);
-            let (nodal, linearization) = scratch.start_linearization(self.linearization_len());
+            let (_, nodal, linearization) = scratch.start_linearization(self.linearization_len());
             dispatch!(dispatch_level(), simd => self.linearize_with(simd, nodal, linearization));
         }
     }

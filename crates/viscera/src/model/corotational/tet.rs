@@ -12,7 +12,7 @@ use crate::material::Tissue;
 use crate::math::rotation::qr;
 use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::TetMesh;
-use crate::model::block_sink::{BlockSink, DiagonalSink};
+use crate::model::block_sink::{BlockSink, DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
 use crate::model::patch::{Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
@@ -130,22 +130,11 @@ impl<T: Scalar> CorotationalTets<T> {
             let Batch { inverse, volume, hooke } = self.numbers::<T>(tet.row);
             let f = edge_matrix(x, tet.corners) * inverse;
             let r = self.formulation.rotation(&f);
-            for corner in 0..4 {
-                let columns = [0, 1, 2].map(|axis| {
-                    let mut ends = [Vec3::ZERO; 4];
-                    ends[corner][axis] = T::ONE;
-                    let df = Mat3::from_columns(ends[1] - ends[0], ends[2] - ends[0], ends[3] - ends[0]) * inverse;
-                    let dr = self.formulation.rotation_along(&f, &r, &df);
-                    let stress = self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
-                    (stress * volume * inverse.transpose()).columns
-                });
-                let [x, y, z] = columns.map(|[f1, f2, f3]| [-(f1 + f2 + f3), f1, f2, f3]);
-                for p in 0..4 {
-                    if p == corner || !sink.keeps_diagonal_only() {
-                        sink.add(tet.corners[p], tet.corners[corner], Mat3::from_columns(x[p], y[p], z[p]));
-                    }
-                }
-            }
+            add_tet_blocks(tet.corners, sink, |dd| {
+                let df = *dd * inverse;
+                let dr = self.formulation.rotation_along(&f, &r, &df);
+                self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df)) * volume * inverse.transpose()
+            });
         }
     }
 
@@ -230,10 +219,6 @@ impl<T: Scalar> Element<T, 1> for FrozenForces<'_, T> {
 }
 
 impl<T: Scalar> Diagonal<T> for FrozenProduct<'_, T> {
-    fn is_wide(&self) -> bool {
-        true
-    }
-
     #[inline(always)]
     fn blocks<S: Simd>(&self, simd: S, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
         let Turned { hooke, gradients } = self.load(simd, slot);
@@ -276,15 +261,13 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.order.add([x], &Forces(self), scratch, out);
+        self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
     }
 
     fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         if scratch.is_linearized && self.formulation.is_linear_in_its_frame() {
-            let linearization = std::mem::take(&mut scratch.linearization);
-            let frozen = FrozenForces(FrozenProduct { tets: self, linearization: &linearization });
-            self.order.add([x], &frozen, scratch, out);
-            scratch.linearization = linearization;
+            let (sums, linearization) = scratch.sums(self.sum_rows());
+            self.order.add([x], &FrozenForces(FrozenProduct { tets: self, linearization }), sums, out);
         } else {
             self.add_forces(x, scratch, out);
         }
@@ -299,18 +282,18 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
         if self.formulation.tangent == Tangent::Frozen {
-            let (executor, linearization) = scratch.start_recording(self.linearization_len());
+            let (executor, _, linearization) = scratch.start_linearization(self.linearization_len());
             self.order.record(x, &Turning(self), executor, linearization);
         }
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        if scratch.is_linearized {
-            let linearization = std::mem::take(&mut scratch.linearization);
-            self.order.add([dx], &FrozenProduct { tets: self, linearization: &linearization }, scratch, out);
-            scratch.linearization = linearization;
+        let is_linearized = scratch.is_linearized;
+        let (sums, linearization) = scratch.sums(self.sum_rows());
+        if is_linearized {
+            self.order.add([dx], &FrozenProduct { tets: self, linearization }, sums, out);
         } else {
-            self.order.add([x, dx], &ExactProduct(self), scratch, out);
+            self.order.add([x, dx], &ExactProduct(self), sums, out);
         }
     }
 
@@ -330,10 +313,8 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
         if scratch.is_linearized {
-            let linearization = std::mem::take(&mut scratch.linearization);
-            let frozen = FrozenProduct { tets: self, linearization: &linearization };
-            self.order.add_diagonal(x, &frozen, scratch, out);
-            scratch.linearization = linearization;
+            let (sums, linearization) = scratch.sums(self.sum_rows());
+            self.order.add_diagonal(x, &FrozenProduct { tets: self, linearization }, sums, out);
         } else {
             self.add_blocks(x, scratch, &mut DiagonalSink(out));
         }
@@ -357,8 +338,8 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         }
     }
 
-    fn copies(&self) -> usize {
-        2 * self.order.copies()
+    fn sum_rows(&self) -> usize {
+        self.order.sum_rows()
     }
 
     fn bytes(&self) -> usize {

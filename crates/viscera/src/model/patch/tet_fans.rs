@@ -6,7 +6,7 @@ use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
-use crate::model::Scratch;
+use crate::model::Sums;
 
 /// Tetrahedra in the order in which loops visit them: patch by patch, fan by fan, as many fans at once as there are lanes.
 ///
@@ -119,9 +119,9 @@ impl TetFans {
         self.rows[cell as usize] as usize
     }
 
-    /// Rows of forces that a loop needs.
-    pub(crate) fn copies(&self) -> usize {
-        self.patches.copies()
+    /// Rows that a loop sums in: forces take one for each copy of a node, blocks two.
+    pub(crate) fn sum_rows(&self) -> usize {
+        2 * self.patches.copies()
     }
 
     /// Size of the numbers that a loop reads [bytes].
@@ -148,36 +148,23 @@ impl TetFans {
     }
 
     /// Adds to `out` the forces that `element` makes of the edges of each tetrahedron in the `fields`.
-    pub(crate) fn add<T: Scalar, const FIELDS: usize>(
+    pub(crate) fn add<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
         &self,
         fields: [&[Vec3<T>]; FIELDS],
-        element: &impl Element<T, FIELDS>,
-        scratch: &mut Scratch<T>,
+        element: &E,
+        sums: Sums<'_, T>,
         out: &mut [Vec3<T>],
     ) {
-        let (executor, rows) = scratch.copies(self.copies());
+        let Sums { executor, rows } = sums;
+        let rows = &mut rows[..self.patches.copies()];
         self.patches.each(executor, rows, 1, &|patch, rows| {
             let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
             self.patches.gather(patch, &fields, &mut places);
-            dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, &mut sums[0]));
-            rows.copy_from_slice(&sums[0][..rows.len()]);
-        });
-        self.patches.add_up(executor, rows, out);
-    }
-
-    /// The same where an element is too rare to be compiled for each instruction set.
-    pub(crate) fn add_baseline<T: Scalar, const FIELDS: usize>(
-        &self,
-        fields: [&[Vec3<T>]; FIELDS],
-        element: &impl Element<T, FIELDS>,
-        scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) {
-        let (executor, rows) = scratch.copies(self.copies());
-        self.patches.each(executor, rows, 1, &|patch, rows| {
-            let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
-            self.patches.gather(patch, &fields, &mut places);
-            self.scatter(baseline(), patch, &places, element, &mut sums[0]);
+            if E::IS_WIDE {
+                dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, &mut sums[0]));
+            } else {
+                self.scatter(baseline(), patch, &places, element, &mut sums[0]);
+            }
             rows.copy_from_slice(&sums[0][..rows.len()]);
         });
         self.patches.add_up(executor, rows, out);
@@ -198,18 +185,18 @@ impl TetFans {
     }
 
     /// Adds to `out` the blocks on the diagonal that `element` makes of the edges of each tetrahedron at `x`.
-    pub(crate) fn add_diagonal<T: Scalar>(
+    pub(crate) fn add_diagonal<T: Scalar, E: Diagonal<T>>(
         &self,
         x: &[Vec3<T>],
-        element: &impl Diagonal<T>,
-        scratch: &mut Scratch<T>,
+        element: &E,
+        sums: Sums<'_, T>,
         out: &mut [Mat3<T>],
     ) {
-        let (executor, rows) = scratch.copies(2 * self.copies());
+        let Sums { executor, rows } = sums;
         self.patches.each(executor, rows, 2, &|patch, rows| {
             let (mut places, mut sums) = (no_rows(), no_rows());
             self.patches.gather(patch, &[x], &mut places);
-            if element.is_wide() {
+            if E::IS_WIDE {
                 dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places, element, &mut sums));
             } else {
                 self.scatter_blocks(baseline(), patch, &places, element, &mut sums);
@@ -324,6 +311,8 @@ impl TetFans {
 
 /// What a loop makes of tetrahedra at which the lanes are, as a function of their edges in some nodal arrays.
 pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
+    /// Whether it is worth compiling for each instruction set.
+    const IS_WIDE: bool = true;
     /// Forces on the corners 1, 2, 3 of the tetrahedra of a slot; that on corner 0 is minus their sum.
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
 }
@@ -331,7 +320,7 @@ pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
 /// Blocks on the diagonal of a stiffness, as a function of the edges.
 pub(crate) trait Diagonal<T: Scalar>: Sync {
     /// Whether it is worth compiling for each instruction set.
-    fn is_wide(&self) -> bool;
+    const IS_WIDE: bool = true;
     /// The blocks of the four corners of the tetrahedra of a slot.
     fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
 }

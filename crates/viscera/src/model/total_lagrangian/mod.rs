@@ -168,8 +168,8 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.remove(cells);
     }
 
-    fn copies(&self) -> usize {
-        self.tets.copies()
+    fn sum_rows(&self) -> usize {
+        self.tets.sum_rows()
     }
 
     fn bytes(&self) -> usize {
