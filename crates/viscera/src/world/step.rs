@@ -1,5 +1,6 @@
 //! One step of a world.
 
+use super::attachment::Aim;
 use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
@@ -87,6 +88,7 @@ impl<T: Scalar> World<T> {
         stages.run(Stage::Guard, || self.keep());
         let Motion { substeps, retries, implicit } = self.move_bodies(&span, stages).inspect_err(|_| self.undo())?;
         stages.run(Stage::Instruments, || self.settle_tools(&span));
+        self.settle_attachments();
         let removed_cells = stages.run(Stage::Cutting, || self.cut(&span));
         self.steps += 1;
         Ok(StepReport { time: span.to, substeps, retries, removed_cells, implicit })
@@ -205,6 +207,7 @@ impl<T: Scalar> World<T> {
 
     /// Moves all bodies by equal sub-steps over the step.
     fn advance(&mut self, span: &Span, substeps: u32, stages: Stages) {
+        self.begin_attachments();
         let dt = self.config.step / f64::from(substeps);
         let gravity = Vec3::from(self.config.gravity).cast();
         for body in &mut self.bodies {
@@ -219,9 +222,12 @@ impl<T: Scalar> World<T> {
             for body in &mut self.bodies {
                 explicit::drift(body, dt, &drive, stages);
             }
+            self.hold_together(dt, Aim::Place);
+            let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             for body in &mut self.bodies {
                 explicit::kick(body, dt, &drive, stages);
             }
+            self.hold_together(dt, Aim::Velocity);
         }
     }
 
