@@ -95,12 +95,9 @@ fn a_thin_sheet_that_flies_at_a_rod_is_caught() {
         let along = Vector::new(0.0, 0.0, 1.0);
         let tool = world.add_instrument(rod(Vector::new(0.041, 0.0, 0.039), along, RADIUS, 0.0)).unwrap();
         world.body_mut(id).set_velocities(|_| Vector::new(0.0, -5.0, 0.0));
-        let mut felt = 0.0f64;
-        for _ in 0..3 {
-            world.step().unwrap();
-            felt = felt.max(world.tool(tool).contact_force.y);
-        }
-        assert!(felt > 0.0, "{integrator:?}");
+        // 25 mm on the way, of which 10 are free.
+        world.step().unwrap();
+        assert!(world.tool(tool).contact_force.y > 0.0, "{integrator:?}");
         // Above the rod the sheet has not gone on.
         for place in world.body(id).positions().iter().filter(|place| (place.x - 0.041).abs() < RADIUS) {
             assert!(place.y > 0.0, "{integrator:?}: {place:?}");
