@@ -3,6 +3,7 @@
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
+use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
 use crate::solver::{BlockJacobi, BlockMatrix, Ending, Multigrid, Problem};
@@ -23,17 +24,30 @@ pub(super) struct Solve {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Solves for the correction of δ; it holds the guess.
+    /// Solves for the correction of δ; it holds the guess. The system is that of Newton's method over the factor of the stiffness,
+    /// which saves its product with every vector.
     pub(super) fn correct(&mut self) -> Solve {
         self.body.linearize(self.stages);
         let (numbers, dt) = (self.numbers, self.dt);
         let (alpha, beta) = (self.body.stiffness_damping.to_f64(), self.body.damping.to_f64());
         let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));
-        let mass_factor = T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt);
+        let mass_factor =
+            T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt) / stiffness;
         let (state, memory) = (&self.body.state, &mut *self.memory);
-        for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
-            *mass = nodal * mass_factor;
-        }
+        let executor = self.body.scratch.executor.clone();
+        let parts = node_blocks(state.masses.len());
+        let data = (
+            (NodeBlocks(&mut memory.masses), NodeBlocks(&mut memory.rhs)),
+            (ReadBlocks(&state.masses), ReadBlocks(&memory.lack)),
+        );
+        executor.each(parts, data, &|_,
+                                     (
+            (NodeBlocks(masses), NodeBlocks(rhs)),
+            (ReadBlocks(nodal), ReadBlocks(lack)),
+        )| {
+            masses.iter_mut().zip(nodal).for_each(|(mass, &nodal)| *mass = nodal * mass_factor);
+            rhs.iter_mut().zip(lack).for_each(|(rhs, &lack)| *rhs = lack * (T::ONE / stiffness));
+        });
         let rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
             if memory.matrix.is_none() && memory.multigrid.is_none() {
@@ -52,22 +66,20 @@ impl<T: Scalar> Step<'_, T> {
                     model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
                 }
             }
-            let rounding = rounding(memory, &state.positions);
-            memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
+            let rounding = rounding(memory, &state.positions, &executor);
+            memory.preconditioner.invert(&memory.masses, &memory.filters, &executor);
             rounding
         });
-        let executor = self.body.scratch.executor.clone();
         let mut tangent = Tangent {
             models: &state.models,
             positions: &state.positions,
             scratch: &mut self.body.scratch,
             assembled: memory.matrix.as_mut(),
             masses: &memory.masses,
-            stiffness,
             stages: self.stages,
         };
         let problem = Problem {
-            rhs: &memory.lack,
+            rhs: &memory.rhs,
             filters: &memory.filters,
             prescribed: &memory.prescribed,
             masses: &memory.masses,
@@ -78,7 +90,7 @@ impl<T: Scalar> Step<'_, T> {
         let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
             Some(multigrid) => {
                 let (filters, masses) = (&memory.filters, &memory.masses);
-                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, stiffness, masses, &executor);
+                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, masses, &executor);
                 solver.solve(&mut tangent, &mut cycle, &problem, stop, &mut memory.correction)
             }
             None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
@@ -124,9 +136,12 @@ impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
 }
 
 /// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.
-fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>]) -> f64 {
-    let blocks = memory.preconditioner.blocks_mut();
-    let squares =
-        blocks.iter().zip(positions).map(|(block, x)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2));
-    ROUNDINGS * T::EPSILON.to_f64() * squares.sum::<f64>().sqrt()
+fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>], executor: &Executor) -> f64 {
+    let data = (ReadBlocks(&*memory.preconditioner.blocks_mut()), ReadBlocks(positions));
+    let square = |(block, x): (&Mat3<T>, &Vec3<T>)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2);
+    let work = |_, (ReadBlocks(blocks), ReadBlocks(x)): (ReadBlocks<'_, Mat3<T>>, ReadBlocks<'_, Vec3<T>>)| {
+        blocks.iter().zip(x).map(square).sum::<f64>()
+    };
+    let squares = executor.fold(node_blocks(positions.len()), data, &work, &|a, b| a + b).unwrap_or(0.0);
+    ROUNDINGS * T::EPSILON.to_f64() * squares.sqrt()
 }
