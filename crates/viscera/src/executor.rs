@@ -17,6 +17,8 @@ const PATIENCE: u32 = 1000;
 #[derive(Clone, Debug, Default)]
 pub struct Executor {
     pool: Option<Arc<ThreadPool>>,
+    /// Whether each thread has a core of its own, as far as the machine goes.
+    has_cores: bool,
 }
 
 /// Why there are no threads to compute with.
@@ -46,8 +48,9 @@ impl Executor {
         if threads <= 1 {
             return Ok(Self::serial());
         }
+        let has_cores = std::thread::available_parallelism().is_ok_and(|cores| threads <= cores.get());
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map(|pool| Self { pool: Some(Arc::new(pool)) })
+        pool.map(|pool| Self { pool: Some(Arc::new(pool)), has_cores })
             .map_err(|source| ExecutorError::NoThreads { threads, source })
     }
 
@@ -57,10 +60,11 @@ impl Executor {
     }
 
     /// Does `work` among the threads: what it divides then finds them awake. A step has hundreds of loops of a few microseconds,
-    /// and to wake a thread for each takes longer.
+    /// and to wake a thread for each takes longer. Threads without a core of their own would only be in each other's way.
     pub(crate) fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
-            Some(pool) => pool.install(|| among_wakeful_threads(work)),
+            Some(pool) if self.has_cores => pool.install(|| among_wakeful_threads(work)),
+            Some(pool) => pool.install(work),
             None => work(),
         }
     }
