@@ -50,7 +50,7 @@ impl<T: Scalar> World<T> {
         let (hand, pose) = (self.tools[id.0].hand, self.tools[id.0].pose);
         let pose =
             if hand.is_some() { instrument.mount().guide(pose) } else { scripted_pose(&instrument, self.time()) };
-        self.tools[id.0] = ToolState { hand, ..ToolState::new(pose) };
+        self.tools[id.0] = ToolState { hand, has_moved: hand.is_some(), ..ToolState::new(pose) };
         self.instruments[id.0] = Some(Box::new(instrument));
         self.reserve_for_tools();
         Ok(())
@@ -69,7 +69,8 @@ impl<T: Scalar> World<T> {
     }
 
     /// Leads an instrument by hand, over its path, until [`World::release_tool`]: at the end of the next step it is where `input`
-    /// says, and on the way it goes straight. Tissue in between is pushed along, however fast it goes.
+    /// says, and on the way it goes straight. Tissue in between is pushed along, however fast it goes. One that has not taken a step yet is
+    /// put there at once.
     ///
     /// # Errors
     /// [`WorldError::MissingInstrument`] for one that is not there; [`WorldError::Instrument`] for a pose that is none.
@@ -81,7 +82,12 @@ impl<T: Scalar> World<T> {
             let (name, range) = ("trigger", "between 0 and 1");
             return Err(InstrumentError::OutOfRange { kind, name, value: input.trigger, range }.into());
         }
-        self.tools[id.0].hand = Some(ToolInput { trigger: input.trigger.clamp(0.0, 1.0), ..input });
+        let pose = self.instrument(id).mount().guide(input.pose);
+        let tool = &mut self.tools[id.0];
+        tool.hand = Some(ToolInput { trigger: input.trigger.clamp(0.0, 1.0), ..input });
+        if !tool.has_moved {
+            tool.pose = pose;
+        }
         Ok(())
     }
 
@@ -242,7 +248,7 @@ impl<T: Scalar> World<T> {
     pub(super) fn settle_tools(&mut self, span: &Span) {
         let per_second = 1.0 / (span.to - span.from);
         for (number, (tool, goal)) in self.tools.iter_mut().zip(&self.motion.goals).enumerate() {
-            (tool.pose, tool.trigger) = (goal.pose, goal.trigger);
+            (tool.pose, tool.trigger, tool.has_moved) = (goal.pose, goal.trigger, true);
             let loads = || self.bodies.iter().map(|body| &body.contacts.loads[number]);
             let mean = |of: fn(&crate::contact::ToolLoad) -> Vec3<f64>| {
                 loads().fold(Vec3::ZERO, |sum, load| sum + of(load)) * per_second

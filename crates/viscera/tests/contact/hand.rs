@@ -111,3 +111,14 @@ fn poses_that_are_none_are_refused() {
     }
     assert_eq!(world.tool(id).hand, None);
 }
+
+/// A tool that was just added is put where the hand first asks for it; it does not come there through the tissue.
+#[test]
+fn a_new_tool_is_put_into_place() {
+    let (mut world, body) = bar();
+    let id = world.add_instrument(Probe::default()).unwrap();
+    world.set_tool(id, input(Vector::new(0.1, 0.2, 0.05), 0.0)).unwrap();
+    world.step().unwrap();
+    assert_eq!(world.tool(id).contact_force, Vector::ZERO);
+    assert_eq!(world.observe(body).kinetic_energy, 0.0);
+}

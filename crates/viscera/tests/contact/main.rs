@@ -2,7 +2,6 @@
 
 mod attachment;
 mod cautery;
-mod debug;
 mod friction;
 mod grip;
 mod hand;

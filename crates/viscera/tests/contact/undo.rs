@@ -71,7 +71,7 @@ fn several_tools_touch_several_bodies() {
             world.set_tool(across, ToolInput { pose, trigger: 0.0 }).unwrap();
             world.step().unwrap();
             for id in world.instrument_ids() {
-                touched[id.0] |= world.tool(id).contacts > 0;
+                touched[id.0] |= world.tool(id).contact_force != Vector::ZERO;
             }
             given = world.instrument_ids().fold(given, |sum, id| sum + world.tool(id).contact_force * 5e-3);
         }
