@@ -192,20 +192,20 @@ impl<T: Scalar> World<T> {
     /// is to be expected; gives in how many parts they want the step divided.
     fn approach(&mut self, span: &Span, reach: f64) -> u32 {
         self.lead_tools(span);
-        self.move_tools(span, 0.0, 1.0);
+        let (way, ratio) = self.survey_tools(span);
         if self.motion.rods.is_empty() {
             self.bodies.iter_mut().for_each(|body| body.contacts.forget());
             return 1;
         }
-        let tool_way = self.motion.rods.iter().map(|rod| rod.way() + rod.start.radius).fold(0.0, f64::max);
+        let radius = self.motion.rods.iter().map(|rod| rod.start.radius).fold(0.0, f64::max);
         let fall = Vec3::from(self.config.gravity).norm() * self.config.step;
         let mut touches = false;
         for body in &mut self.bodies {
-            let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * tool_way;
+            let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * (way + radius);
             body.contacts.forget();
             touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach * expected);
         }
-        if touches { self.parts_of_fast_tools().ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
+        if touches { (2.0 * ratio).ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
     /// Moves all bodies by equal sub-steps over the step.

@@ -9,6 +9,9 @@ use crate::math::{Scalar, Vec3};
 /// The trigger from which on jaws hold.
 const CLOSED: f64 = 0.5;
 
+/// Parts of a step in which the speed of tools is looked at.
+const GLANCES: u32 = 8;
+
 /// How the tools move: memory that means nothing between steps.
 #[derive(Debug, Default)]
 pub(super) struct ToolMotion {
@@ -273,9 +276,19 @@ impl<T: Scalar> World<T> {
         ToolUse { span: *span, from, to: tool.pose, trigger: tool.trigger, is_led: tool.hand.is_some() }
     }
 
-    /// In how many parts an explicit step has to be divided so that no tool that may touch goes farther in one than half of its radius.
-    pub(super) fn parts_of_fast_tools(&self) -> f64 {
-        self.motion.rods.iter().map(|rod| 2.0 * rod.way() / rod.start.radius).fold(0.0, f64::max)
+    /// How far tools would go in the step at the highest speed that they have in it [m], and the largest ratio of that to the radius: a path
+    /// may lead there and back. Leaves the rods as they go from one end of the step to the other.
+    pub(super) fn survey_tools(&mut self, span: &Span) -> (f64, f64) {
+        let (mut way, mut ratio) = (0.0f64, 0.0f64);
+        for part in 0..GLANCES {
+            self.move_tools(span, f64::from(part) / f64::from(GLANCES), f64::from(part + 1) / f64::from(GLANCES));
+            for rod in &self.motion.rods {
+                way = way.max(rod.way() * f64::from(GLANCES));
+                ratio = ratio.max(rod.way() * f64::from(GLANCES) / rod.start.radius);
+            }
+        }
+        self.move_tools(span, 0.0, 1.0);
+        (way, ratio)
     }
 }
 
