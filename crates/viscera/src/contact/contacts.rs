@@ -34,7 +34,8 @@ pub struct Contact {
     /// Stiffness of the spring that stands for the contact in an implicit step [N/m]; 0 until it is known.
     pub(super) stiffness: f64,
     pub(super) is_active: bool,
-    pub(super) sticks: bool,
+    /// Share of the friction of sticking that the cone lets through.
+    pub(super) grip: f64,
     /// Friction at the beginning of an implicit step [N].
     pub(super) before: Point,
 }
@@ -167,7 +168,7 @@ impl Contacts {
                     drag: Point::ZERO,
                     stiffness: 0.0,
                     is_active: false,
-                    sticks: true,
+                    grip: 1.0,
                     before: Point::ZERO,
                 });
             }

@@ -4,9 +4,10 @@
 //!
 //! f = −k (gap + n·(d − u)) n + t,   t = t₀ − k (I − n nᵀ)(d − u) while |t| ≤ μ|f·n|,   else μ|f·n| along that,
 //!
-//! where t₀ is the friction at the end of the step before: a block on a slope would creep without it. Which contacts push and which
-//! of them stick is decided between linear solves, until nothing changes; all stick at first, and one that slips does so until the end of
-//! the step, with a force that stands still within a solve.
+//! where t₀ is the friction at the end of the step before: a block on a slope would creep without it. Which contacts push is decided
+//! between linear solves, until nothing changes; and how much of the sticking force, and of its stiffness, the cone lets through: what
+//! slips keeps a spring that is just so much softer (a secant of the law), and the matrix stays positive. A slipping force that
+//! stood still within a solve changed its sign from one to the next, and threw a block off its rods.
 //!
 //! k is [`STIFFER`] times what the diagonal of the matrix offers the point, so it belongs to the tissue, the mesh and the step.
 
@@ -18,8 +19,8 @@ use crate::mesh::Point;
 
 /// Stiffness of a contact over that of the matrix's diagonal at its point.
 const STIFFER: f64 = 20.0;
-/// Friction that slips is found anew while it changes by more than this share of its limit.
-const SETTLED: f64 = 1e-2;
+/// Friction is found anew while it is off by more than this share of its limit.
+const SETTLED: f64 = 2e-2;
 
 /// Friction of a contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,20 +55,17 @@ impl Contact {
 
     /// Stiffness along the normal and across it.
     fn stiffnesses(&self) -> (f64, f64) {
-        let across = if self.sticks && self.friction > 0.0 { self.stiffness } else { 0.0 };
+        let across = if self.friction > 0.0 { self.grip * self.stiffness } else { 0.0 };
         if self.is_active { (self.stiffness, across) } else { (0.0, 0.0) }
     }
 
-    /// The force on the tissue; that of friction which slips stands still.
+    /// The force on the tissue.
     fn set_force(&mut self, slide: Point) {
-        if !self.is_active {
+        if self.is_active {
+            self.push = -self.stiffness * (self.gap + self.normal.dot(slide));
+            self.drag = self.friction_of_sticking(slide) * self.grip;
+        } else {
             (self.push, self.drag) = (0.0, Point::ZERO);
-            return;
-        }
-        let along = self.normal.dot(slide);
-        self.push = -self.stiffness * (self.gap + along);
-        if self.sticks {
-            self.drag = self.friction_of_sticking(slide);
         }
     }
 
@@ -82,27 +80,21 @@ impl Contact {
 }
 
 impl Contacts {
-    /// Says which contacts push and which stick when each node goes by its `increment` [m]; gives whether that is news.
+    /// Says which contacts push and how well they stick when each node goes by its `increment` [m]; gives whether that is news.
     pub(crate) fn decide(&mut self, increment: impl Fn(u32) -> Point) -> bool {
         let mut news = false;
         for contact in &mut self.list {
             let slide = contact.slide(&increment);
             let is_active = contact.gap + contact.normal.dot(slide) < 0.0;
             news |= std::mem::replace(&mut contact.is_active, is_active) != is_active;
-            let is_known = contact.stiffness > 0.0;
-            if !is_active || !is_known {
+            contact.set_force(slide);
+            if is_active && contact.stiffness > 0.0 && contact.friction > 0.0 {
+                let (size, most) = (contact.friction_of_sticking(slide).norm(), contact.friction * contact.push);
+                let grip = if size <= most { 1.0 } else { most / size };
+                news |= (grip - contact.grip).abs() * size > SETTLED * most;
+                contact.grip = grip;
                 contact.set_force(slide);
-                continue;
             }
-            contact.push = -contact.stiffness * (contact.gap + contact.normal.dot(slide));
-            let (wanted, most) = (contact.friction_of_sticking(slide), contact.friction * contact.push);
-            let size = wanted.norm();
-            // Once it has slipped it slips until the end of the step: with the push that goes with it, it may seem to stick, and with
-            // that to slip again.
-            let sticks = contact.sticks && size <= most;
-            let drag = if sticks || size == 0.0 { wanted } else { wanted * (most / size) };
-            news |= sticks != contact.sticks || (!sticks && (drag - contact.drag).norm() > SETTLED * most);
-            (contact.sticks, contact.drag) = (sticks, drag);
         }
         news
     }

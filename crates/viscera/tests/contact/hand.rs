@@ -120,5 +120,6 @@ fn a_new_tool_is_put_into_place() {
     world.set_tool(id, input(Vector::new(0.1, 0.2, 0.05), 0.0)).unwrap();
     world.step().unwrap();
     assert_eq!(world.tool(id).contact_force, Vector::ZERO);
-    assert_eq!(world.observe(body).kinetic_energy, 0.0);
+    // What rounding makes of a body at rest.
+    assert!(world.observe(body).kinetic_energy < 1e-25);
 }

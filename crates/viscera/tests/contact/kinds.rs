@@ -15,9 +15,11 @@ struct Telling {
     shift: Vector,
     /// Units of length in a metre.
     length: f64,
+    /// How far tools are rolled, for jaws that open as they did before the turn [rad].
+    roll: f64,
 }
 
-const PLAIN: Telling = Telling { turn: Mat3::IDENTITY, shift: Vector::ZERO, length: 1.0 };
+const PLAIN: Telling = Telling { turn: Mat3::IDENTITY, shift: Vector::ZERO, length: 1.0, roll: 0.0 };
 
 impl Telling {
     fn place(&self, x: Vector) -> Vector {
@@ -45,7 +47,7 @@ impl Telling {
             let (down, aside) = (0.03 * (2.0 * t).min(1.0), 0.02 * (2.0 * t - 1.0).max(0.0));
             let tip = Vector::new(0.041 + aside, 0.06 - down, 0.028 + 0.3 * aside);
             let direction = Vector::new(0.2, -1.0, 0.1);
-            let pose = ToolPose { tip: self.place(tip), direction: self.turn * direction, roll: 0.0 };
+            let pose = ToolPose { tip: self.place(tip), direction: self.turn * direction, roll: self.roll };
             world.set_tool(id, ToolInput { pose, trigger: if t > 0.4 { 1.0 } else { 0.0 } }).unwrap();
             world.step().unwrap();
         }
@@ -60,8 +62,8 @@ fn every_way(mut test: impl FnMut(InstrumentKind, Integrator)) {
     }
 }
 
-/// What the tool has given is what the free block has got: action equals reaction, to rounding in explicit steps, and to the solver's
-/// tolerance in implicit ones.
+/// What the tool has given is what the free block has got: action equals reaction, to rounding in explicit steps, and in linearised ones to
+/// the 1e-3 to which those that go astray are solved instead.
 #[test]
 fn the_block_s_momentum_is_the_impulse_of_the_tool() {
     every_way(|kind, integrator| {
@@ -75,7 +77,7 @@ fn the_block_s_momentum_is_the_impulse_of_the_tool() {
         }
         let error = (momentum(&world) - given).norm() / size;
         assert!(size > 0.0, "{kind:?} must touch");
-        assert!(error < if integrator == EXPLICIT { 1e-12 } else { 1e-5 }, "{kind:?} {integrator:?}: {error:.2e}");
+        assert!(error < if integrator == EXPLICIT { 1e-12 } else { 1e-3 }, "{kind:?} {integrator:?}: {error:.2e}");
     });
 }
 
@@ -119,7 +121,8 @@ fn assert_same_motion(telling: &Telling) {
 fn pose_does_not_matter() {
     let (sin, cos) = 0.7f64.sin_cos();
     let [x, y, z] = [Vector::new(cos, 0.0, -sin), Vector::new(0.0, 1.0, 0.0), Vector::new(sin, 0.0, cos)];
-    assert_same_motion(&Telling { turn: Mat3::from_columns(x, y, z), shift: Vector::new(1.0, -2.0, 0.5), length: 1.0 });
+    let turn = Mat3::from_columns(x, y, z);
+    assert_same_motion(&Telling { turn, shift: Vector::new(1.0, -2.0, 0.5), roll: -0.7, ..PLAIN });
 }
 
 /// Millimetres tell the same motion: no length, mass or force is written into contact.
