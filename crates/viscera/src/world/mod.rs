@@ -7,6 +7,7 @@ mod snapshot;
 mod statics;
 mod step;
 mod step_implicit;
+mod succession;
 
 pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
