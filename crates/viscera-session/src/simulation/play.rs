@@ -185,8 +185,13 @@ impl Play {
 
     /// Worlds with their bodies' numbers among all and their surfaces.
     pub(crate) fn parts(&self) -> impl Iterator<Item = (&AnyWorld, usize, &Surface)> {
-        let of = |world, surfaces: &'_ [Surface]| surfaces.iter().enumerate().map(move |(body, surface)| (world, body, surface));
-        let ghost = self.ghost.iter().flat_map(move |ghost| of(&ghost.world, &ghost.surfaces));
+        fn of<'a>(
+            world: &'a AnyWorld,
+            surfaces: &'a [Surface],
+        ) -> impl Iterator<Item = (&'a AnyWorld, usize, &'a Surface)> {
+            surfaces.iter().enumerate().map(move |(body, surface)| (world, body, surface))
+        }
+        let ghost = self.ghost.iter().flat_map(|ghost| of(&ghost.world, &ghost.surfaces));
         of(&self.world, &self.surfaces).chain(ghost)
     }
 
