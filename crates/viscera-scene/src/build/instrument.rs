@@ -19,11 +19,13 @@ pub(super) fn add<T: Scalar>(
             radius: radius.0,
             close: close.0,
             open: open.map(|open| open.0),
+            ..Grasper::default()
         }),
         InstrumentFile::Cautery { path, radius, on, off } => world.add_instrument(Cautery {
             path: curve(path, &way)?,
             radius: radius.0,
             on: (on.map_or(0.0, |on| on.0), off.map_or(f64::INFINITY, |off| off.0)),
+            ..Cautery::default()
         }),
     };
     added.map_err(|error| match error {

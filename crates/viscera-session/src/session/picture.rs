@@ -175,7 +175,7 @@ impl Session {
             radius,
             camera: play.camera(),
             bodies: play.bodies(),
-            instruments: present.map(|(number, tool)| tools::shape(&play.world, number as u32, tool)).collect(),
+            instruments: present.map(|(number, tool)| tools::shape(&play.world, number as u32, tool, radius)).collect(),
             parameters: parameter::parameters(&play.file, &play.original),
             snapshots: self.slots.iter().map(snapshot).collect(),
             ghost: play.ghost.is_some(),
@@ -186,11 +186,9 @@ impl Session {
     fn frame_message(&mut self) -> FrameMessage {
         let observables = self.observe();
         let by = self.colouring;
-        let play = &mut self.play;
-        let mut instruments = Vec::new();
-        for (number, tool) in play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
-            instruments.push(tools::frame(&mut play.world, number as u32, tool));
-        }
+        let play = &self.play;
+        let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
+        let instruments = present.map(|(number, tool)| tools::frame(&play.world, number as u32, tool)).collect();
         let frame = |(world, body, surface): (&crate::simulation::AnyWorld, usize, &crate::simulation::Surface)| BodyFrame {
             epoch: surface.epoch,
             positions: F32s(world.positions(body, &surface.nodes)),

@@ -43,6 +43,7 @@ impl Fresh {
         let tool = |(number, name): (usize, String)| Tool {
             kind: tools::kind(&world, number as u32),
             name,
+            of_scene: true,
             scripted: true,
             removed: false,
             stamp: None,

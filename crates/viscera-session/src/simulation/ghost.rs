@@ -22,11 +22,11 @@ impl Ghost {
         file: &SceneFile,
         origin: &Origin,
         meshes: &mut Meshes,
-        tools: &[Tool],
+        (tools, radius): (&[Tool], f64),
         from: Option<&AnyWorld>,
     ) -> Result<Self, Box<Refusal>> {
         let Fresh { mut world, mut surfaces, .. } = Fresh::of_file(&linear(file), origin, meshes)?;
-        tools::match_slots(&mut world, tools)?;
+        tools::match_slots(&mut world, radius, tools)?;
         if let Some(from) = from {
             world.continue_from(from).map_err(|error| refuse::because(error.to_string()))?;
         }

@@ -46,16 +46,16 @@ impl Play {
     /// Takes other parameters. Where they make no sense, nothing changes.
     pub(crate) fn change(&mut self, file: SceneFile, how: &Change) -> Result<(), Box<Refusal>> {
         let Fresh { mut world, surfaces, .. } = Fresh::of_file(&file, &self.origin, &mut self.meshes)?;
-        tools::match_slots(&mut world, &self.tools)?;
+        tools::match_slots(&mut world, self.ball.1, &self.tools)?;
         let goes_on = matches!(how, Change::Continue);
         if goes_on {
             world.continue_from(&self.world).map_err(|error| refuse::because(error.to_string()))?;
         } else {
-            tools::lead_as_before(&mut world, &self.world, &self.tools);
+            tools::lead_as_before(&mut world, self.ball.1, &self.world, &self.tools)?;
         }
         let of_ghost = |ghost: &Ghost| {
             let from = goes_on.then_some(&ghost.world);
-            Ghost::of(&file, &self.origin, &mut self.meshes, &self.tools, from)
+            Ghost::of(&file, &self.origin, &mut self.meshes, (&self.tools, self.ball.1), from)
         };
         let ghost = self.ghost.as_ref().map(of_ghost).transpose()?;
         // Of the same meshes: vertices keep their numbers, and whoever draws them need not know.
@@ -75,10 +75,10 @@ impl Play {
     /// Goes back to a state of the scene with other parameters and instruments.
     pub(crate) fn restore(&mut self, kept: &Kept) -> Result<(), Box<Refusal>> {
         let Fresh { mut world, mut surfaces, .. } = Fresh::of_file(&kept.file, &self.origin, &mut self.meshes)?;
-        tools::match_slots(&mut world, &kept.tools)?;
+        tools::match_slots(&mut world, self.ball.1, &kept.tools)?;
         world.restore(&kept.state).map_err(refuse::because)?;
         let of_ghost =
-            |_| Ghost::of(&kept.file, &self.origin, &mut self.meshes, &kept.tools, Some(&world));
+            |_| Ghost::of(&kept.file, &self.origin, &mut self.meshes, (&kept.tools, self.ball.1), Some(&world));
         let ghost = self.ghost.as_ref().map(of_ghost).transpose()?;
         follow(&world, &mut surfaces);
         (self.world, self.surfaces, self.ghost) = (world, surfaces, ghost);
@@ -95,7 +95,7 @@ impl Play {
     /// Shows the linear model beside each body, or hides it.
     pub(crate) fn show_ghost(&mut self, on: bool) -> Result<(), Box<Refusal>> {
         if on != self.ghost.is_some() {
-            let make = || Ghost::of(&self.file, &self.origin, &mut self.meshes, &self.tools, Some(&self.world));
+            let make = || Ghost::of(&self.file, &self.origin, &mut self.meshes, (&self.tools, self.ball.1), Some(&self.world));
             self.ghost = on.then(make).transpose()?;
         }
         Ok(())
@@ -120,13 +120,13 @@ impl Play {
 
     /// Brings an instrument in; gives its number.
     pub(crate) fn add_tool(&mut self, kind: &str, hand: &Hand) -> Result<u32, Box<Refusal>> {
-        tools::add(&mut self.world, kind, self.ball.1, Some(hand)).map_err(refuse::because)?;
+        tools::add(&mut self.world, kind, self.ball.1, hand).map_err(refuse::because)?;
         if let Some(ghost) = &mut self.ghost {
-            tools::add(&mut ghost.world, kind, self.ball.1, Some(hand)).map_err(refuse::because)?;
+            tools::add(&mut ghost.world, kind, self.ball.1, hand).map_err(refuse::because)?;
         }
         let number = self.tools.len() as u32;
         let name = format!("{kind} {}", number + 1);
-        self.tools.push(Tool { kind: kind.into(), name, scripted: false, removed: false, stamp: None });
+        self.tools.push(Tool { kind: kind.into(), name, of_scene: false, scripted: false, removed: false, stamp: None });
         Ok(number)
     }
 

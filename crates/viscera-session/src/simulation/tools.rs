@@ -1,11 +1,22 @@
-//! The instruments of a world, as a page sees them.
+//! The instruments of a world, as a page sees and leads them.
 
 use serde::{Deserialize, Serialize};
-use viscera::math::Vec3;
-use viscera::world::{InstrumentId, World};
+use viscera::curve::Curve;
+use viscera::instrument::{Capsule, Cautery, Grasper, Instrument, InstrumentKind, Jaws, Mount, Probe, Shaft, ToolInput, ToolPose};
+use viscera::math::{Scalar, Vec3};
+use viscera::world::{BodyId, InstrumentId, World, WorldError};
 
 use super::world::{AnyWorld, with};
-use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Refusal, Rod};
+use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Jaw, Refusal, Rod};
+use crate::refuse;
+
+/// Radius of a scene [m] for which instruments have their real measures; much smaller and much larger ones get instruments in
+/// proportion.
+const USUAL_RADIUS: f64 = 0.15;
+/// Power of the cautery [W], as surgeons set it for cutting.
+const POWER: f64 = 60.0;
+/// Share of the heat of evaporation that a cell takes in before it goes: of a cell of 16 mm edges, the whole would take seconds.
+const HASTE: f64 = 0.02;
 
 /// What a hand asks of an instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +33,9 @@ pub(crate) struct Hand {
 pub(crate) struct Tool {
     pub(crate) kind: String,
     pub(crate) name: String,
+    /// Whether the scene brought it in: its world is built with it.
+    pub(crate) of_scene: bool,
+    /// Whether the scene leads it.
     pub(crate) scripted: bool,
     pub(crate) removed: bool,
     /// What the page called the moment of the last move.
@@ -29,73 +43,191 @@ pub(crate) struct Tool {
     pub(crate) stamp: Option<f64>,
 }
 
+impl Hand {
+    fn input(&self) -> ToolInput {
+        let pose = ToolPose { tip: self.tip.into(), direction: self.direction.into(), roll: self.roll };
+        ToolInput { pose, trigger: self.trigger }
+    }
+}
+
+fn id(instrument: u32) -> InstrumentId {
+    InstrumentId(instrument as usize)
+}
+
 /// The instruments that can be brought in.
 pub(crate) fn entries() -> Vec<InstrumentEntry> {
-    Vec::new()
+    let entry = |kind: &InstrumentKind| {
+        let (title, summary, trigger) = match kind {
+            InstrumentKind::Probe => ("Probe", "A round rod that pushes tissue and slides along it.", ""),
+            InstrumentKind::Grasper => ("Grasper", "Jaws that hold what they close on.", "closes the jaws"),
+            InstrumentKind::Cautery => ("Cautery", "A hot hook that burns away what it stays on.", "switches the current on"),
+        };
+        InstrumentEntry {
+            kind: kind.name().into(),
+            title: title.into(),
+            summary: summary.into(),
+            trigger: trigger.into(),
+        }
+    };
+    InstrumentKind::ALL.iter().map(entry).collect()
 }
 
 /// Gives a world that was just built the instruments that another one has, under the same numbers.
-pub(crate) fn match_slots(_world: &mut AnyWorld, _tools: &[Tool]) -> Result<(), Box<Refusal>> {
+pub(crate) fn match_slots(world: &mut AnyWorld, radius: f64, tools: &[Tool]) -> Result<(), Box<Refusal>> {
+    for (number, tool) in tools.iter().enumerate() {
+        let hand = Hand { tip: [0.0; 3], direction: [0.0, -1.0, 0.0], roll: 0.0, trigger: 0.0 };
+        if !tool.of_scene {
+            add(world, &tool.kind, radius, &hand).map_err(refuse::because)?;
+        }
+        if tool.removed {
+            remove(world, number as u32).map_err(refuse::because)?;
+        }
+    }
     Ok(())
 }
 
-/// Leads the instruments of a world that begins again to where hands hold them.
-pub(crate) fn lead_as_before(_world: &mut AnyWorld, _before: &AnyWorld, _tools: &[Tool]) {}
-
-/// Brings an instrument in, sized for bodies within a ball of `radius` [m].
-pub(crate) fn add(_world: &mut AnyWorld, kind: &str, _radius: f64, _hand: Option<&Hand>) -> Result<(), String> {
-    Err(format!("there is no instrument `{kind}`"))
+/// Leads the instruments of a world that begins again to where hands hold them. Those that a hand brought in are there at once: on
+/// the way they would sweep up what is in between.
+pub(crate) fn lead_as_before(world: &mut AnyWorld, radius: f64, before: &AnyWorld, tools: &[Tool]) -> Result<(), Box<Refusal>> {
+    for (number, tool) in tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
+        let number = number as u32;
+        let state = with!(before, before => *before.tool(id(number)));
+        let Some(hand) = state.hand else { continue };
+        let hand = Hand {
+            tip: hand.pose.tip.to_array(),
+            direction: hand.pose.direction.to_array(),
+            roll: hand.pose.roll,
+            trigger: hand.trigger,
+        };
+        if !tool.of_scene {
+            place(world, number, &tool.kind, radius, &hand).map_err(refuse::because)?;
+        }
+        lead(world, number, &hand).map_err(refuse::because)?;
+    }
+    Ok(())
 }
 
-pub(crate) fn lead(_world: &mut AnyWorld, _instrument: u32, _hand: &Hand) -> Result<(), String> {
-    Err("instruments follow their paths".into())
+/// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m].
+pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+    let kind = named(kind)?;
+    with!(world, world => world.add_instrument(instrument(kind, radius, hand)).map(|_| ())).map_err(text)
 }
 
-pub(crate) fn remove(_world: &mut AnyWorld, _instrument: u32) -> Result<(), String> {
-    Err("instruments stay".into())
+/// Puts an instrument where the hand is, at once.
+fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+    let kind = named(kind)?;
+    with!(world, world => world.replace_instrument(id(number), instrument(kind, radius, hand))).map_err(text)
+}
+
+/// Says where an instrument should be at the end of the next step.
+pub(crate) fn lead(world: &mut AnyWorld, instrument: u32, hand: &Hand) -> Result<(), String> {
+    with!(world, world => world.set_tool(id(instrument), hand.input())).map_err(text)
+}
+
+pub(crate) fn remove(world: &mut AnyWorld, instrument: u32) -> Result<(), String> {
+    with!(world, world => world.remove_instrument(id(instrument))).map_err(text)
 }
 
 pub(crate) fn kind(world: &AnyWorld, instrument: u32) -> String {
-    with!(world, world => world.instrument(InstrumentId(instrument as usize)).kind().into())
+    with!(world, world => world.instrument(id(instrument)).kind().into())
 }
 
-pub(crate) fn shape(world: &AnyWorld, instrument: u32, tool: &Tool) -> InstrumentShape {
+fn text(error: WorldError) -> String {
+    error.to_string()
+}
+
+fn named(kind: &str) -> Result<InstrumentKind, String> {
+    let known = InstrumentKind::ALL.iter().find(|known| known.name() == kind);
+    known.copied().ok_or_else(|| format!("there is no instrument `{kind}`"))
+}
+
+/// Factor on the real measures of instruments for bodies within a ball of `radius` [m].
+fn proportion(radius: f64) -> f64 {
+    if (0.2..5.0).contains(&(radius / USUAL_RADIUS)) { 1.0 } else { radius / USUAL_RADIUS }
+}
+
+fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
+    let size = proportion(radius);
+    let path = Curve::constant(Vec3::from(hand.tip));
+    let mount = Mount { roll: hand.roll, ..Mount::along(hand.direction.into()) };
+    let shaft = Shaft { radius: 2.5e-3 * size, length: 0.3 * size };
+    match kind {
+        InstrumentKind::Probe => Box::new(Probe { path, mount, shaft, ..Probe::default() }),
+        InstrumentKind::Grasper => Box::new(Grasper {
+            path,
+            mount,
+            radius: 0.012 * size,
+            jaws: Some(Jaws { length: 0.02 * size, radius: 1.5e-3 * size, ..Jaws::default() }),
+            shaft: Some(shaft),
+            ..Grasper::default()
+        }),
+        InstrumentKind::Cautery => {
+            let (radius, heat) = (5e-3 * size, HASTE * Cautery::default().heat);
+            let power = POWER * size.powi(3);
+            Box::new(Cautery { path, mount, radius, heat, power, shaft: Some(shaft), ..Cautery::default() })
+        }
+    }
+}
+
+pub(crate) fn shape(world: &AnyWorld, instrument: u32, tool: &Tool, radius: f64) -> InstrumentShape {
+    let (parts, reach, trocar) = with!(world, world => {
+        let this = world.instrument(id(instrument));
+        (world.tool_capsules(id(instrument)), this.reach(), this.mount().trocar)
+    });
+    let size = proportion(radius);
+    let rod = |part: &Capsule| Rod { radius: part.radius, length: (part.to - part.from).norm() };
+    let shaft = parts.first().map_or(Rod { radius: 2.5e-3 * size, length: 0.3 * size }, rod);
+    let jaw = parts.get(1).map_or(Rod { radius: 0.6 * shaft.radius, length: reach.max(8.0 * shaft.radius) }, rod);
     InstrumentShape {
         instrument,
         kind: tool.kind.clone(),
         name: tool.name.clone(),
         scripted: tool.scripted,
-        shaft: Rod { radius: 0.0025, length: 0.3 },
-        reach: with!(world, world => world.instrument(InstrumentId(instrument as usize)).reach()),
-        jaw: None,
-        hook: None,
-        trocar: None,
+        shaft,
+        reach,
+        jaw: (tool.kind == InstrumentKind::Grasper.name()).then_some(Jaw {
+            length: jaw.length,
+            radius: jaw.radius,
+            widest: Jaws::default().opening,
+        }),
+        hook: (tool.kind == InstrumentKind::Cautery.name())
+            .then_some(Rod { radius: 0.4 * shaft.radius, length: 2.0 * reach }),
+        trocar: trocar.map(Vec3::to_array),
     }
 }
 
-pub(crate) fn frame(world: &mut AnyWorld, instrument: u32, tool: &Tool) -> InstrumentFrame {
-    fn of<T: viscera::math::Scalar>(world: &mut World<T>, instrument: u32) -> (Vec3<f64>, bool, usize, Vec3<f64>) {
-        let seen = world.observe_instrument(InstrumentId(instrument as usize));
-        (seen.tip, seen.active, seen.held_nodes, seen.force)
+pub(crate) fn frame(world: &AnyWorld, instrument: u32, tool: &Tool) -> InstrumentFrame {
+    fn of<T: Scalar>(world: &World<T>, instrument: u32, tool: &Tool) -> InstrumentFrame {
+        let id = id(instrument);
+        let state = world.tool(id);
+        let parts = world.tool_capsules(id);
+        let numbers = |part: &Capsule| {
+            let ends = [part.from, part.to].map(|end| end.cast::<f32>().to_array());
+            ends.into_iter().flatten().chain([part.radius as f32])
+        };
+        InstrumentFrame {
+            instrument,
+            tip: state.pose.tip.to_array(),
+            direction: state.pose.direction.to_array(),
+            roll: state.pose.roll,
+            trigger: state.trigger,
+            opening: Jaws::default().opening * (1.0 - state.trigger),
+            active: world.is_at_work(id),
+            holds: state.held_nodes > 0,
+            force: (-state.force()).to_array(),
+            torque: (-state.torque()).to_array(),
+            parts: F32s(parts.iter().flat_map(numbers).collect()),
+            stamp: tool.stamp,
+        }
     }
-    let (tip, active, held, force) = with!(world, world => of(world, instrument));
-    InstrumentFrame {
-        instrument,
-        tip: tip.to_array(),
-        direction: [0.0, -1.0, 0.0],
-        roll: 0.0,
-        trigger: f64::from(u8::from(active)),
-        opening: 0.0,
-        active,
-        holds: held > 0,
-        force: (-force).to_array(),
-        torque: [0.0; 3],
-        parts: F32s(Vec::new()),
-        stamp: tool.stamp,
-    }
+    with!(world, world => of(world, instrument, tool))
 }
 
 /// How burnt these nodes are [0 … 1]; none where nothing is.
-pub(crate) fn seared(_world: &AnyWorld, _body: usize, _nodes: &[u32]) -> Option<Vec<f32>> {
-    None
+pub(crate) fn seared(world: &AnyWorld, body: usize, nodes: &[u32]) -> Option<Vec<f32>> {
+    with!(world, world => {
+        let seared = world.body(BodyId(body)).seared();
+        let values: Vec<f32> = nodes.iter().map(|&node| seared[node as usize].to_f64() as f32).collect();
+        values.iter().any(|&value| value > 0.0).then_some(values)
+    })
 }

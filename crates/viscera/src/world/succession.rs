@@ -4,7 +4,7 @@ use crate::math::Scalar;
 
 impl<T: Scalar> World<T> {
     /// Goes on from where `other` is: this world was built anew with another law, model, integrator, step or precision, and takes over
-    /// places, velocities, cuts, what instruments hold, and the time, to the nearest step.
+    /// places, velocities, cuts, instruments with what they hold and who leads them, and the time, to the nearest step.
     ///
     /// ```
     /// use viscera::body::Body;
@@ -28,10 +28,14 @@ impl<T: Scalar> World<T> {
     /// ```
     ///
     /// # Errors
-    /// [`WorldError::ForeignSnapshot`] for a world with another number of bodies or instruments; [`WorldError::OtherMesh`] where a
+    /// [`WorldError::ForeignSnapshot`] for a world with other instruments or another number of bodies; [`WorldError::OtherMesh`] where a
     /// body has another mesh. Nothing is changed.
     pub fn continue_from<U: Scalar>(&mut self, other: &World<U>) -> Result<(), WorldError> {
-        if self.bodies.len() != other.bodies.len() || self.instruments.len() != other.instruments.len() {
+        let there = |(own, of): (&Option<_>, &Option<_>)| own.is_some() == of.is_some();
+        if self.bodies.len() != other.bodies.len()
+            || self.instruments.len() != other.instruments.len()
+            || !self.instruments.iter().zip(&other.instruments).all(there)
+        {
             return Err(WorldError::ForeignSnapshot);
         }
         let differs = |(body, of): &(&SimulatedBody<T>, &SimulatedBody<U>)| !body.has_mesh_of(of);
@@ -42,7 +46,8 @@ impl<T: Scalar> World<T> {
         for (body, of) in self.bodies.iter_mut().zip(&other.bodies) {
             body.continue_from(of);
         }
-        self.move_tips(self.time());
+        self.tools.clone_from(&other.tools);
+        self.reserve_for_tools();
         Ok(())
     }
 }
@@ -71,7 +76,11 @@ impl<T: Scalar> SimulatedBody<T> {
                 state.grips[node] = of.grips[node].cast::<f64>().cast();
             }
         }
+        let cast = |values: &[U]| values.iter().map(|value| T::from_f64(value.to_f64())).collect();
+        (state.heat, state.seared) = (cast(&of.heat), cast(&of.seared));
+        state.tractions.clone_from(&of.tractions);
         state.past.is_known = false;
         state.positions_changed();
+        self.update_skin();
     }
 }
