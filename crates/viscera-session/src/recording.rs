@@ -96,7 +96,9 @@ pub enum RecordingError {
     #[error("this is no recording of Viscera, or it is damaged: {0}")]
     Unreadable(String),
     /// They are of another version.
-    #[error("the recording has format {found}, and this program reads format {FORMAT}: record it again, or take the program it is of")]
+    #[error(
+        "the recording has format {found}, and this program reads format {FORMAT}: record it again, or take the program it is of"
+    )]
     OtherFormat {
         /// Its format.
         found: u32,
@@ -166,7 +168,8 @@ impl Mark {
             let off = (0..3).map(|axis| (now.mean[axis] - then.mean[axis]).abs()).fold(0.0, f64::max);
             let scale = then.displacement.max(now.displacement);
             if off > TOLERANCE * scale {
-                let text = format!("nodes of body {index} are {off:.3e} m off on average, at displacements of {scale:.3e} m");
+                let text =
+                    format!("nodes of body {index} are {off:.3e} m off on average, at displacements of {scale:.3e} m");
                 return Agreement::None(text);
             }
         }

@@ -13,8 +13,8 @@ pub use frame::{
     BodyFrame, ColourRange, FrameMessage, InstrumentFrame, Observables, Pace, RecordingState, ReplayState, RunState,
 };
 pub use scene::{
-    BodyEntry, Camera, Catalogue, Choice, ColouringEntry, Effect, Entry, InstrumentEntry, InstrumentShape, Jaw, Parameter,
-    ParameterKind, RecordingEntry, Rod, Scale, SceneEntry, SceneMessage, SnapshotEntry, SurfaceMessage,
+    BodyEntry, Camera, Catalogue, Choice, ColouringEntry, Effect, Entry, InstrumentEntry, InstrumentShape, Jaw,
+    Parameter, ParameterKind, RecordingEntry, Rod, Scale, SceneEntry, SceneMessage, SnapshotEntry, SurfaceMessage,
 };
 
 use serde::{Deserialize, Serialize};

@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use viscera::material::LawKind;
 use viscera::model::ModelKind;
-use viscera_scene::file::{BodyFile, GenerateFile, LawName, MeshFile, ModelName};
 use viscera_scene::file::CellShape;
+use viscera_scene::file::{BodyFile, GenerateFile, LawName, MeshFile, ModelName};
 
 use crate::message::{Choice, Entry};
 

@@ -1,8 +1,8 @@
 //! The only list of parameters. A new one is an entry here; the page, its ranges and its refusals follow.
 
 use viscera_scene::file::{
-    BodyFile, GenerateFile, IntegratorFile, IntegratorName, LawFile, LawName, MeshFile, ModelFile, ModelName, Precision,
-    SceneFile,
+    BodyFile, GenerateFile, IntegratorFile, IntegratorName, LawFile, LawName, MeshFile, ModelFile, ModelName,
+    Precision, SceneFile,
 };
 use viscera_scene::quantity::{Acceleration, Density, Length, Pressure, Rate, Time};
 
@@ -173,9 +173,10 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         form: Form::Vector,
         get: |body| direction_of(&body.law).map(Value::Vector),
         set: |body, value| {
-            plain(vector(value).and_then(|direction| {
-                fibre_of(&mut body.law).map(|fibre| fibre.direction = Some(direction))
-            }))
+            plain(
+                vector(value)
+                    .and_then(|direction| fibre_of(&mut body.law).map(|fibre| fibre.direction = Some(direction))),
+            )
         },
     },
     Definition {
@@ -198,8 +199,15 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         summary: "Force against changes of the volume of each cell; 0 is none.",
         unit: "Pa",
         effect: Effect::Continues,
-        form: Form::Number { least: FROM_ZERO, most: None, scale: Scale::Linear, span: |default| (0.0, default.max(2e4) * 5.0) },
-        get: |body| Some(Value::Number(body.model.as_ref().and_then(|model| model.keep_volume).map_or(0.0, |kappa| kappa.0))),
+        form: Form::Number {
+            least: FROM_ZERO,
+            most: None,
+            scale: Scale::Linear,
+            span: |default| (0.0, default.max(2e4) * 5.0),
+        },
+        get: |body| {
+            Some(Value::Number(body.model.as_ref().and_then(|model| model.keep_volume).map_or(0.0, |kappa| kappa.0)))
+        },
         set: |body, value| {
             plain(value.number().map(|kappa| {
                 let kind = model_of(body);
@@ -221,9 +229,11 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         },
         get: |body| body.model.as_ref().and_then(|model| model.adaptive).map(|length| Value::Number(length.0)),
         set: |body, value| {
-            plain(value.number().and_then(|length| {
-                body.model.as_mut().map(|model| model.adaptive = Some(Length(length)))
-            }))
+            plain(
+                value
+                    .number()
+                    .and_then(|length| body.model.as_mut().map(|model| model.adaptive = Some(Length(length)))),
+            )
         },
     },
     Definition {
@@ -232,7 +242,12 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         summary: "Mass over volume; soft tissue about 1060 kg/m³.",
         unit: "kg/m³",
         effect: Effect::Continues,
-        form: Form::Number { least: ABOVE_ZERO, most: None, scale: Scale::Linear, span: |default| (0.2 * default, 3.0 * default) },
+        form: Form::Number {
+            least: ABOVE_ZERO,
+            most: None,
+            scale: Scale::Linear,
+            span: |default| (0.2 * default, 3.0 * default),
+        },
         get: |body| Some(Value::Number(body.density.0)),
         set: |body, value| plain(value.number().map(|number| body.density = Density(number))),
     },
@@ -242,7 +257,12 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         summary: "Against the surroundings: each node is held back with rate × mass × velocity.",
         unit: "1/s",
         effect: Effect::Continues,
-        form: Form::Number { least: FROM_ZERO, most: None, scale: Scale::Linear, span: |default| (0.0, default.max(5.0) * 4.0) },
+        form: Form::Number {
+            least: FROM_ZERO,
+            most: None,
+            scale: Scale::Linear,
+            span: |default| (0.0, default.max(5.0) * 4.0),
+        },
         get: |body| Some(Value::Number(body.damping.0)),
         set: |body, value| plain(value.number().map(|number| body.damping = Rate(number))),
     },
@@ -252,7 +272,12 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         summary: "For implicit integrators: a velocity acts as its displacement over this time would.",
         unit: "s",
         effect: Effect::Continues,
-        form: Form::Number { least: FROM_ZERO, most: None, scale: Scale::Linear, span: |default| (0.0, default.max(0.01) * 5.0) },
+        form: Form::Number {
+            least: FROM_ZERO,
+            most: None,
+            scale: Scale::Linear,
+            span: |default| (0.0, default.max(0.01) * 5.0),
+        },
         get: |body| Some(Value::Number(body.stiffness_damping.0)),
         set: |body, value| plain(value.number().map(|number| body.stiffness_damping = Time(number))),
     },
@@ -346,17 +371,15 @@ fn fibre_of(law: &mut LawFile) -> Option<&mut viscera_scene::file::FibreFile> {
     let (direction, factor) = (direction_of(law), factor_of(law));
     match law.kind {
         LawName::NeoHookean | LawName::StableNeoHookean => None,
-        LawName::Linear | LawName::StVenantKirchhoff => {
-            Some(law.fibre.get_or_insert_with(|| viscera_scene::file::FibreFile {
-                direction,
-                along: None,
-                file: None,
-                young: None,
-                factor,
-                lambda: None,
-                mu: None,
-            }))
-        }
+        LawName::Linear | LawName::StVenantKirchhoff => Some(law.fibre.get_or_insert(viscera_scene::file::FibreFile {
+            direction,
+            along: None,
+            file: None,
+            young: None,
+            factor,
+            lambda: None,
+            mu: None,
+        })),
     }
 }
 

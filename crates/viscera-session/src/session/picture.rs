@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use super::Session;
-use crate::message::{
-    Answer, BodyFrame, ColourRange, F32s, FrameMessage, Observables, SceneMessage, SnapshotEntry,
-};
+use crate::message::{Answer, BodyFrame, ColourRange, F32s, FrameMessage, Observables, SceneMessage, SnapshotEntry};
 use crate::parameter;
 use crate::simulation::colour::Colouring;
 use crate::simulation::tools;
@@ -161,7 +159,8 @@ impl Session {
         let play = &self.play;
         let (centre, radius) = play.ball;
         let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
-        let snapshot = |kept: &Option<crate::simulation::Kept>| kept.as_ref().map(|kept| SnapshotEntry { time: kept.time });
+        let snapshot =
+            |kept: &Option<crate::simulation::Kept>| kept.as_ref().map(|kept| SnapshotEntry { time: kept.time });
         SceneMessage {
             epoch: self.gallery.epoch,
             name: play.origin.name.clone(),
@@ -189,12 +188,13 @@ impl Session {
         let play = &self.play;
         let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
         let instruments = present.map(|(number, tool)| tools::frame(&play.world, number as u32, tool)).collect();
-        let frame = |(world, body, surface): (&crate::simulation::AnyWorld, usize, &crate::simulation::Surface)| BodyFrame {
-            epoch: surface.epoch,
-            positions: F32s(world.positions(body, &surface.nodes)),
-            scalars: world.scalars(body, by, &surface.nodes).map(F32s),
-            seared: tools::seared(world, body, &surface.nodes).map(F32s),
-        };
+        let frame =
+            |(world, body, surface): (&crate::simulation::AnyWorld, usize, &crate::simulation::Surface)| BodyFrame {
+                epoch: surface.epoch,
+                positions: F32s(world.positions(body, &surface.nodes)),
+                scalars: world.scalars(body, by, &surface.nodes).map(F32s),
+                seared: tools::seared(world, body, &surface.nodes).map(F32s),
+            };
         let bodies: Vec<BodyFrame> = play.parts().map(frame).collect();
         self.gallery.sequence += 1;
         FrameMessage {
@@ -217,12 +217,22 @@ impl Session {
     /// The scale of the colours: as long as it has to be at once, shorter by and by.
     fn colour_range(&mut self, bodies: &[BodyFrame]) -> ColourRange {
         let by = self.colouring;
-        let scalars = bodies.iter().filter_map(|body| body.scalars.as_ref()).flat_map(|scalars| scalars.0.iter().copied());
+        let scalars =
+            bodies.iter().filter_map(|body| body.scalars.as_ref()).flat_map(|scalars| scalars.0.iter().copied());
         let (low, high) = by.range(scalars);
         // Of a body at rest: so little that it looks like nothing.
         let least = match by {
             Colouring::Displacement => 1e-3 * self.play.ball.1,
-            Colouring::VonMises => 1e-3 * self.play.file.body.values().filter_map(|body| body.law.young).map(|young| young.0).fold(0.0, f64::max),
+            Colouring::VonMises => {
+                1e-3 * self
+                    .play
+                    .file
+                    .body
+                    .values()
+                    .filter_map(|body| body.law.young)
+                    .map(|young| young.0)
+                    .fold(0.0, f64::max)
+            }
             Colouring::None | Colouring::VolumeChange | Colouring::AdaptiveMode => 1e-3,
         };
         let (low, high) = (if low < 0.0 { low.min(-least) } else { low }, high.max(least));

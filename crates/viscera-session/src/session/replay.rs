@@ -123,7 +123,8 @@ impl Session {
     pub(super) fn do_what_is_replayed(&mut self) -> bool {
         // Taken out, so that its commands are not refused as those of the user are.
         let Some(mut replayer) = self.replayer.take() else { return true };
-        while let Some(event) = replayer.recording.events.get(replayer.next_event).filter(|event| event.at <= replayer.made)
+        while let Some(event) =
+            replayer.recording.events.get(replayer.next_event).filter(|event| event.at <= replayer.made)
         {
             replayer.next_event += 1;
             let done = self.carry_out(event.command.clone(), None);

@@ -100,7 +100,9 @@ fn mean_of_cells<T: Scalar>(body: &SimulatedBody<T>, nodes: &[u32], of_cell: imp
         }
     }
     let mean = |&node: &u32| match sums[node as usize] {
-        (sum, count) if count > 0 && state.motions[node as usize] != NodeMotion::Retired => (sum / f64::from(count)) as f32,
+        (sum, count) if count > 0 && state.motions[node as usize] != NodeMotion::Retired => {
+            (sum / f64::from(count)) as f32
+        }
         _ => 0.0,
     };
     nodes.iter().map(mean).collect()

@@ -95,7 +95,8 @@ impl Play {
     /// Shows the linear model beside each body, or hides it.
     pub(crate) fn show_ghost(&mut self, on: bool) -> Result<(), Box<Refusal>> {
         if on != self.ghost.is_some() {
-            let make = || Ghost::of(&self.file, &self.origin, &mut self.meshes, (&self.tools, self.ball.1), Some(&self.world));
+            let make =
+                || Ghost::of(&self.file, &self.origin, &mut self.meshes, (&self.tools, self.ball.1), Some(&self.world));
             self.ghost = on.then(make).transpose()?;
         }
         Ok(())
@@ -126,7 +127,14 @@ impl Play {
         }
         let number = self.tools.len() as u32;
         let name = format!("{kind} {}", number + 1);
-        self.tools.push(Tool { kind: kind.into(), name, of_scene: false, scripted: false, removed: false, stamp: None });
+        self.tools.push(Tool {
+            kind: kind.into(),
+            name,
+            of_scene: false,
+            scripted: false,
+            removed: false,
+            stamp: None,
+        });
         Ok(number)
     }
 

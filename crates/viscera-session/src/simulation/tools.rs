@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use viscera::curve::Curve;
-use viscera::instrument::{Capsule, Cautery, Grasper, Instrument, InstrumentKind, Jaws, Mount, Probe, Shaft, ToolInput, ToolPose};
+use viscera::instrument::{
+    Capsule, Cautery, Grasper, Instrument, InstrumentKind, Jaws, Mount, Probe, Shaft, ToolInput, ToolPose,
+};
 use viscera::math::{Scalar, Vec3};
 use viscera::world::{BodyId, InstrumentId, World, WorldError};
 
@@ -60,7 +62,9 @@ pub(crate) fn entries() -> Vec<InstrumentEntry> {
         let (title, summary, trigger) = match kind {
             InstrumentKind::Probe => ("Probe", "A round rod that pushes tissue and slides along it.", ""),
             InstrumentKind::Grasper => ("Grasper", "Jaws that hold what they close on.", "closes the jaws"),
-            InstrumentKind::Cautery => ("Cautery", "A hot hook that burns away what it stays on.", "switches the current on"),
+            InstrumentKind::Cautery => {
+                ("Cautery", "A hot hook that burns away what it stays on.", "switches the current on")
+            }
         };
         InstrumentEntry {
             kind: kind.name().into(),
@@ -88,7 +92,12 @@ pub(crate) fn match_slots(world: &mut AnyWorld, radius: f64, tools: &[Tool]) -> 
 
 /// Leads the instruments of a world that begins again to where hands hold them. Those that a hand brought in are there at once: on
 /// the way they would sweep up what is in between.
-pub(crate) fn lead_as_before(world: &mut AnyWorld, radius: f64, before: &AnyWorld, tools: &[Tool]) -> Result<(), Box<Refusal>> {
+pub(crate) fn lead_as_before(
+    world: &mut AnyWorld,
+    radius: f64,
+    before: &AnyWorld,
+    tools: &[Tool],
+) -> Result<(), Box<Refusal>> {
     for (number, tool) in tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
         let number = number as u32;
         let state = with!(before, before => *before.tool(id(number)));

@@ -81,7 +81,8 @@ mod tests {
     #[test]
     fn tension_and_shear_show_their_stress_however_they_are_turned() {
         let mu = YOUNG / (2.0 * (1.0 + POISSON));
-        let svk = || TotalLagrangian::new(Tissue::uniform(StVenantKirchhoff::from_young_poisson(YOUNG, POISSON).unwrap()));
+        let svk =
+            || TotalLagrangian::new(Tissue::uniform(StVenantKirchhoff::from_young_poisson(YOUNG, POISSON).unwrap()));
         let turned = || Corotational::new(Tissue::uniform(LinearElastic::from_young_poisson(YOUNG, POISSON).unwrap()));
         for angle in [0.0, 1.0] {
             // Strains of 1e-6 leave 1e-5 to the geometry, and to rounding.

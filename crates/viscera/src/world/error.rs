@@ -70,7 +70,9 @@ pub enum WorldError {
     #[error("the snapshot belongs to a world with other bodies or instruments; restore it there")]
     ForeignSnapshot,
     /// A world cannot go on from another one whose body has other nodes or cells.
-    #[error("body `{body}` has another mesh there: only bodies with the same nodes and cells can go on from one another")]
+    #[error(
+        "body `{body}` has another mesh there: only bodies with the same nodes and cells can go on from one another"
+    )]
     OtherMesh {
         /// Name of the body.
         body: String,

@@ -57,7 +57,9 @@ impl<T: Scalar> SimulatedBody<T> {
         // Named regions may differ: they have done their work.
         let (mesh, of) = (&self.mesh, &other.mesh);
         let cells = mesh.cell_count();
-        mesh.nodes() == of.nodes() && cells == of.cell_count() && (0..cells).all(|cell| mesh.cell(cell) == of.cell(cell))
+        mesh.nodes() == of.nodes()
+            && cells == of.cell_count()
+            && (0..cells).all(|cell| mesh.cell(cell) == of.cell(cell))
     }
 
     fn continue_from<U: Scalar>(&mut self, other: &SimulatedBody<U>) {
