@@ -109,7 +109,8 @@ impl Player {
             Some(due) => until_picture.min(Duration::from_secs_f64(due.min(1.0))),
             None => until_picture.max(Duration::from_millis(1)),
         };
-        match self.handle.block_on(timeout(pause, self.received.recv())) {
+        // The timer is made inside, where there is a runtime to make it with.
+        match self.handle.block_on(async { timeout(pause, self.received.recv()).await }) {
             Ok(None) => return false,
             Ok(Some(command)) => self.session.receive(&command),
             Err(_) => {}

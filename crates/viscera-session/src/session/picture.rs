@@ -118,6 +118,11 @@ impl Gallery {
 }
 
 impl Session {
+    /// Makes the next picture even if nothing changes: somebody new looks on, and no picture is kept.
+    pub fn look_again(&mut self) {
+        self.gallery.touch();
+    }
+
     /// What is to be seen now; none where nothing has changed since the last call.
     pub fn picture(&mut self) -> Option<Picture> {
         self.make_pending_changes();
