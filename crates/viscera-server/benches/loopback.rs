@@ -95,7 +95,11 @@ async fn measure_latency(socket: &mut Socket) {
         }
         let stamp = Some(turn as f64);
         let sent = Instant::now();
-        say(socket, Command::MoveInstrument { instrument: 0, tip: tip(turn), direction, roll: 0.0, trigger: 0.0, stamp }).await;
+        say(
+            socket,
+            Command::MoveInstrument { instrument: 0, tip: tip(turn), direction, roll: 0.0, trigger: 0.0, stamp },
+        )
+        .await;
         loop {
             let seen = frame(socket).await;
             let there = seen.instruments.first().is_some_and(|tool| (tool.tip[2] - tip(turn)[2]).abs() < 1e-9);
@@ -107,7 +111,12 @@ async fn measure_latency(socket: &mut Socket) {
     }
     times.sort();
     let at = |share: f64| 1e3 * times[((times.len() - 1) as f64 * share) as usize].as_secs_f64();
-    println!("latency   pose to frame   median {:.1} ms   95 % {:.1} ms   largest {:.1} ms   {POSES} poses", at(0.5), at(0.95), at(1.0));
+    println!(
+        "latency   pose to frame   median {:.1} ms   95 % {:.1} ms   largest {:.1} ms   {POSES} poses",
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
 }
 
 async fn say(socket: &mut Socket, command: Command) {

@@ -127,13 +127,15 @@ fn a_page_hears_welcome_catalogue_scene_surface_and_frames_that_move() {
         let before = visitor.frame().await;
         let after = visitor.frame().await;
         assert!(after.sequence > before.sequence);
-        visitor.until(|answer| match answer {
-            Answer::Frame(frame) if frame.steps > before.steps => {
-                assert_ne!(frame.bodies[0].positions, before.bodies[0].positions);
-                Some(())
-            }
-            _ => None,
-        }).await;
+        visitor
+            .until(|answer| match answer {
+                Answer::Frame(frame) if frame.steps > before.steps => {
+                    assert_ne!(frame.bodies[0].positions, before.bodies[0].positions);
+                    Some(())
+                }
+                _ => None,
+            })
+            .await;
     });
 }
 
@@ -145,7 +147,8 @@ fn one_controls_and_the_next_takes_over_when_it_leaves() {
         let (mut second, welcome) = Visitor::enter(server.address()).await;
         assert_eq!(welcome.role, Role::Watcher);
         second.send(Request { command: Command::Pause {}, request: Some(5) }.encode()).await;
-        let refusal = second.until(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None }).await;
+        let refusal =
+            second.until(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None }).await;
         assert!(refusal.reason.contains("another page controls") && refusal.request == Some(5));
         first.frame().await;
         assert_eq!(first.frame().await.state, RunState::Running, "a watcher changes nothing");
@@ -153,7 +156,9 @@ fn one_controls_and_the_next_takes_over_when_it_leaves() {
         let role = second.until(|answer| if let Answer::Role(role) = answer { Some(role) } else { None }).await;
         assert_eq!((role.role, role.clients), (Role::Controller, 1));
         second.say(Command::Pause {}).await;
-        second.until(|answer| matches!(answer, Answer::Frame(frame) if frame.state == RunState::Paused).then_some(())).await;
+        second
+            .until(|answer| matches!(answer, Answer::Frame(frame) if frame.state == RunState::Paused).then_some(()))
+            .await;
     });
 }
 
@@ -169,7 +174,8 @@ fn malformed_messages_are_refused_and_the_simulation_goes_on() {
             visitor.until(|answer| matches!(answer, Answer::Refusal(_)).then_some(())).await;
         }
         visitor.socket.send(Message::Text("pause".into())).await.unwrap();
-        let refusal = visitor.until(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None }).await;
+        let refusal =
+            visitor.until(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None }).await;
         assert!(refusal.reason.contains("binary"));
         visitor.until(|answer| matches!(answer, Answer::Frame(frame) if frame.steps > before).then_some(())).await;
     });
@@ -213,7 +219,8 @@ fn a_slow_page_gets_fewer_frames_and_none_that_is_old() {
     let (server, runtime) = start();
     runtime.block_on(async {
         let (mut quick, _) = Visitor::enter(server.address()).await;
-        let sheet = BAR.replace("size = [0.04, 0.04, 0.12], cells = [2, 2, 6]", "size = [0.2, 0.2, 0.005], cells = [40, 40, 1]");
+        let sheet = BAR
+            .replace("size = [0.04, 0.04, 0.12], cells = [2, 2, 6]", "size = [0.2, 0.2, 0.005], cells = [40, 40, 1]");
         quick.say(Command::Pause {}).await;
         quick.say(Command::OpenText { text: sheet, name: None }).await;
         quick.say(Command::Colour { by: "displacement".into() }).await;
@@ -278,7 +285,8 @@ fn other_sites_get_neither_the_page_nor_the_session() {
     runtime.block_on(async {
         let address = server.address();
         let own = address.to_string();
-        let upgrade = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+        let upgrade =
+            "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
         for (path, host, origin, wanted) in [
             ("/", own.as_str(), None, [200, 503]),
             ("/", "rebound.example:8472", None, [403, 403]),
@@ -287,7 +295,8 @@ fn other_sites_get_neither_the_page_nor_the_session() {
             ("/nothing", own.as_str(), None, [404, 404]),
         ] {
             let origin = origin.map_or(String::new(), |origin| format!("Origin: {origin}\r\n"));
-            let (status, text) = ask(address, &format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n{origin}{upgrade}")).await;
+            let (status, text) =
+                ask(address, &format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n{origin}{upgrade}")).await;
             assert!(wanted.contains(&status), "{path} of {host}: {text}");
         }
         let mut request = format!("ws://{address}/ws").into_client_request().unwrap();

@@ -12,7 +12,7 @@ use crate::message::{MeshUnit, Refusal};
 use crate::refuse;
 
 /// What an organ measures across [m]: the unit of a file without one is the one that comes nearest.
-const ORGAN: f64 = 0.25;
+const ORGAN: f64 = 0.15;
 /// Cells across a surface that is filled, unless the user says otherwise.
 const ACROSS: f64 = 16.0;
 /// The most cells that a surface is filled with.

@@ -17,6 +17,7 @@ pub const FILES: &[(&str, &[u8])] = files![
     "fibre-tubes.toml",
     "liver-adaptive.toml",
     "liver-inversion.toml",
+    "liver-probe.toml",
     "liver-pull.toml",
     "liver-resection.toml",
     "liver.toml",

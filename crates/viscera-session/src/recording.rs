@@ -61,7 +61,7 @@ pub(crate) struct Event {
 pub(crate) struct Mark {
     /// After how many steps.
     pub(crate) at: u64,
-    /// CRC-32 of the world's snapshot.
+    /// CRC-32 of the bits of all places and velocities and of the cells that are gone.
     pub(crate) checksum: u32,
     pub(crate) bodies: Vec<BodyMark>,
 }

@@ -44,7 +44,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
         unit: "s",
         effect: Effect::Continues,
         form: Form::Number {
-            least: ABOVE_ZERO,
+            least: Some((1e-5, Bound::Included)),
             most: Some((0.1, Bound::Included)),
             scale: Scale::Logarithmic,
             span: |_| (1e-3, 4e-2),

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use viscera::world::BodyId;
+use viscera::math::{Scalar, Vec3};
+use viscera::world::World;
 use viscera_scene::{Files, Scene};
 
 use super::Session;
@@ -190,28 +191,27 @@ impl Session {
     }
 }
 
-/// How the world stands.
+/// How the world stands. The checksum is of places, velocities and cuts: a snapshot also tells whether somebody asked for forces.
 fn mark(play: &Play, at: u64) -> Mark {
-    fn bodies<T: viscera::math::Scalar>(world: &viscera::world::World<T>) -> Vec<BodyMark> {
-        let of_body = |BodyId(id): BodyId| {
-            let body = world.body(BodyId(id));
-            let mut sum = [0.0; 3];
+    fn of<T: Scalar>(world: &World<T>, at: u64) -> Mark {
+        let mut hasher = crc32fast::Hasher::new();
+        let mut bodies = Vec::new();
+        for body in world.body_ids().map(|id| world.body(id)) {
+            let mut sum = Vec3::ZERO;
             for (place, &rest) in body.positions().iter().zip(body.mesh().nodes()) {
-                let displacement = (place.cast::<f64>() - rest).to_array();
-                (0..3).for_each(|axis| sum[axis] += displacement[axis]);
+                sum += place.cast::<f64>() - rest;
             }
-            let nodes = body.positions().len() as f64;
-            BodyMark {
-                cells: body.cell_count() as u64,
-                displacement: body.max_displacement(),
-                mean: sum.map(|component| component / nodes),
+            for number in body.positions().iter().chain(body.velocities()).flat_map(|v| v.cast::<f64>().to_array()) {
+                hasher.update(&number.to_bits().to_le_bytes());
             }
-        };
-        world.body_ids().map(of_body).collect()
+            body.state().removals.cells().iter().for_each(|cell| hasher.update(&cell.to_le_bytes()));
+            let (cells, displacement) = (body.cell_count() as u64, body.max_displacement());
+            bodies.push(BodyMark { cells, displacement, mean: (sum / body.positions().len() as f64).to_array() });
+        }
+        Mark { at, checksum: hasher.finalize(), bodies }
     }
-    let bodies = match &play.world {
-        AnyWorld::Single(world) => bodies(world),
-        AnyWorld::Double(world) => bodies(world),
-    };
-    Mark { at, checksum: crc32fast::hash(&play.world.snapshot()), bodies }
+    match &play.world {
+        AnyWorld::Single(world) => of(world, at),
+        AnyWorld::Double(world) => of(world, at),
+    }
 }

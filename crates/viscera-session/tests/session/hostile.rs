@@ -22,7 +22,7 @@ fn malformed_messages_are_refused_with_a_reason_and_the_scene_goes_on() {
     let deep = (0..1000).fold(rmpv::Value::Nil, |inner, _| rmpv::Value::Array(vec![inner]));
     for (message, reason) in [
         (vec![], "cannot be read"),
-        (vec![0xc1], "cannot be read"),
+        (vec![0xc1], "not a map"),
         // An array of 4 billion entries, of which none is there; a text of as many bytes.
         (vec![0xdd, 0xff, 0xff, 0xff, 0xff], "cannot be read"),
         (vec![0xdb, 0xff, 0xff, 0xff, 0xff], "cannot be read"),

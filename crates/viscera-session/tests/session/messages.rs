@@ -22,7 +22,10 @@ fn commands() -> Vec<(&'static str, Request)> {
         ("set-number", plain(Command::Set { key: "body.liver.law.young".into(), value: Value::Number(5000.5) })),
         ("set-vector", plain(Command::Set { key: "gravity".into(), value: Value::Vector([0.0, -9.81, 0.5]) })),
         ("set-text", plain(Command::Set { key: "integrator.kind".into(), value: Value::Text("newmark".into()) })),
-        ("add-instrument", plain(Command::AddInstrument { kind: "probe".into(), tip: None, direction: Some([0.0, -1.0, 0.5]) })),
+        (
+            "add-instrument",
+            plain(Command::AddInstrument { kind: "probe".into(), tip: None, direction: Some([0.0, -1.0, 0.5]) }),
+        ),
         ("remove-instrument", plain(Command::RemoveInstrument { instrument: 3 })),
         (
             "move-instrument",
@@ -93,7 +96,12 @@ fn answers() -> Vec<(&'static str, Answer)> {
             "catalogue",
             Answer::Catalogue(Catalogue {
                 scenes: vec![SceneEntry { name: "liver".into(), title: "A liver".into() }],
-                recordings: vec![RecordingEntry { name: "r".into(), title: "R".into(), scene: "liver".into(), seconds: 1.5 }],
+                recordings: vec![RecordingEntry {
+                    name: "r".into(),
+                    title: "R".into(),
+                    scene: "liver".into(),
+                    seconds: 1.5,
+                }],
                 laws: vec![entry("linear")],
                 models: vec![entry("tensor-mass")],
                 integrators: vec![entry("explicit")],
@@ -145,7 +153,11 @@ fn answers() -> Vec<(&'static str, Answer)> {
                 }],
                 parameters: vec![
                     parameter("body.liver.law.young", Value::Number(5000.0), number),
-                    parameter("body.liver.law.kind", Value::Text("linear".into()), ParameterKind::Choice { choices: vec![choice] }),
+                    parameter(
+                        "body.liver.law.kind",
+                        Value::Text("linear".into()),
+                        ParameterKind::Choice { choices: vec![choice] },
+                    ),
                     parameter("gravity", Value::Vector([0.0, -9.81, 0.0]), ParameterKind::Vector {}),
                     parameter("flag", Value::Flag(true), ParameterKind::Flag {}),
                 ],
@@ -227,7 +239,13 @@ fn answers() -> Vec<(&'static str, Answer)> {
                 help: String::new(),
                 key: Some("body.liver.law.young".into()),
                 request: Some(7),
-                excerpt: Some(Excerpt { source: "scene".into(), line: 3, column: 2, text: "young = -1".into(), length: 2 }),
+                excerpt: Some(Excerpt {
+                    source: "scene".into(),
+                    line: 3,
+                    column: 2,
+                    text: "young = -1".into(),
+                    length: 2,
+                }),
             }),
         ),
         (

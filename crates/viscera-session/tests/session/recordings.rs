@@ -8,19 +8,19 @@ use crate::support::{BAR, Page};
 
 /// A minute of a user's work, in half a second: lifts the end of the bar, softens it on the way, cuts it.
 fn work(page: &mut Page) {
-    let grasper = page.add("grasper", [0.02, 0.02, 0.12], [0.0, -1.0, 0.0]);
-    page.lead(grasper, [0.02, 0.02, 0.12], 1.0);
+    let grasper = page.add("grasper", [0.02, 0.043, 0.115], [0.0, -1.0, 0.0]);
+    page.lead(grasper, [0.02, 0.043, 0.115], 1.0);
     page.step(2);
     for lift in 1..=30 {
-        page.lead(grasper, [0.02, 0.02 + 0.001 * f64::from(lift), 0.12], 1.0);
+        page.lead(grasper, [0.02, 0.043 + 0.001 * f64::from(lift), 0.115], 1.0);
         page.step(1);
         if lift == 10 {
             page.set("body.bar.law.young", 12e3);
         }
     }
-    let cautery = page.add("cautery", [0.02, 0.08, 0.06], [0.0, -1.0, 0.0]);
+    let cautery = page.add("cautery", [0.02, 0.1, 0.06], [0.0, -1.0, 0.0]);
     for step in 0..30 {
-        page.lead(cautery, [0.02, 0.08 - 0.002 * f64::from(step), 0.06], 1.0);
+        page.lead(cautery, [0.02, 0.1 - 0.002 * f64::from(step), 0.06], 1.0);
         page.step(1);
     }
     page.say(Command::RemoveInstrument { instrument: grasper });

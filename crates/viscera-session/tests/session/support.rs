@@ -106,19 +106,27 @@ impl Page {
             .into_iter()
             .partition::<Vec<_>, _>(|answer| matches!(answer, Answer::Refusal(_)));
         self.heard = others;
-        refused.into_iter().filter_map(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None }).collect()
+        refused
+            .into_iter()
+            .filter_map(|answer| if let Answer::Refusal(refusal) = answer { Some(refusal) } else { None })
+            .collect()
     }
 
     /// Texts of the notices since the last call.
     pub(crate) fn notices(&mut self) -> Vec<String> {
         let heard = std::mem::take(&mut self.heard);
-        heard.into_iter().filter_map(|answer| if let Answer::Notice(notice) = answer { Some(notice.text) } else { None }).collect()
+        heard
+            .into_iter()
+            .filter_map(|answer| if let Answer::Notice(notice) = answer { Some(notice.text) } else { None })
+            .collect()
     }
 
     /// Bytes of the file that came last.
     pub(crate) fn file(&mut self) -> Vec<u8> {
         let heard = std::mem::take(&mut self.heard);
-        let files = heard.into_iter().filter_map(|answer| if let Answer::File(file) = answer { Some(file.bytes.0) } else { None });
+        let files = heard
+            .into_iter()
+            .filter_map(|answer| if let Answer::File(file) = answer { Some(file.bytes.0) } else { None });
         files.last().expect("a file came")
     }
 

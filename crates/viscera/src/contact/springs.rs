@@ -5,7 +5,8 @@
 //! f = −k (gap + n·(d − u)) n + t,   t = t₀ − k (I − n nᵀ)(d − u) while |t| ≤ μ|f·n|,   else μ|f·n| along that,
 //!
 //! where t₀ is the friction at the end of the step before: a block on a slope would creep without it. Which contacts push and which
-//! of them stick is decided between linear solves, until nothing changes; within one, the force of one that slips stands still.
+//! of them stick is decided between linear solves, until nothing changes; all stick at first, and one that slips does so until the end of
+//! the step, with a force that stands still within a solve.
 //!
 //! k is [`STIFFER`] times what the diagonal of the matrix offers the point, so it belongs to the tissue, the mesh and the step.
 
@@ -18,7 +19,7 @@ use crate::mesh::Point;
 /// Stiffness of a contact over that of the matrix's diagonal at its point.
 const STIFFER: f64 = 20.0;
 /// Friction that slips is found anew while it changes by more than this share of its limit.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 1e-2;
 
 /// Friction of a contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,8 +97,10 @@ impl Contacts {
             contact.push = -contact.stiffness * (contact.gap + contact.normal.dot(slide));
             let (wanted, most) = (contact.friction_of_sticking(slide), contact.friction * contact.push);
             let size = wanted.norm();
-            let sticks = size <= most;
-            let drag = if sticks { wanted } else { wanted * (most / size) };
+            // Once it has slipped it slips until the end of the step: with the push that goes with it, it may seem to stick, and with
+            // that to slip again.
+            let sticks = contact.sticks && size <= most;
+            let drag = if sticks || size == 0.0 { wanted } else { wanted * (most / size) };
             news |= sticks != contact.sticks || (!sticks && (drag - contact.drag).norm() > SETTLED * most);
             (contact.sticks, contact.drag) = (sticks, drag);
         }
@@ -133,8 +136,8 @@ impl Contacts {
         }
     }
 
-    /// Adds the springs' part of the matrix times x to `out`.
-    pub(crate) fn add_product<T: Scalar>(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+    /// Adds `scale` times the springs' part of the matrix times x to `out`.
+    pub(crate) fn add_product<T: Scalar>(&self, scale: f64, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
         for contact in &self.list {
             let (along, across) = contact.stiffnesses();
             if along == 0.0 {
@@ -144,7 +147,7 @@ impl Contacts {
             let way = of(0) + of(1) + of(2);
             let force = way * across + contact.normal * ((along - across) * contact.normal.dot(way));
             for (&node, &weight) in contact.nodes.iter().zip(&contact.weights) {
-                out[node as usize] += (force * weight).cast();
+                out[node as usize] += (force * (weight * scale)).cast();
             }
         }
     }

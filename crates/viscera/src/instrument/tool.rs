@@ -12,6 +12,8 @@ pub struct ToolState {
     pub trigger: f64,
     /// What leads it, if a hand does.
     pub hand: Option<ToolInput>,
+    /// Whether it has taken a step: before that it is just being put into place.
+    pub has_moved: bool,
     /// Whether its jaws are closed or its current is on.
     pub is_closed: bool,
     /// Nodes that it holds.
@@ -35,6 +37,7 @@ impl ToolState {
             pose,
             trigger: 0.0,
             hand: None,
+            has_moved: false,
             is_closed: false,
             held_nodes: 0,
             contact_force: Vec3::ZERO,

@@ -51,15 +51,19 @@ impl<T: Scalar> World<T> {
     /// step is divided, so that none of those goes farther than its radius in one.
     fn approach_in_time(&mut self, span: &Span) -> u32 {
         self.lead_tools(span);
-        self.move_tools(span, 0.0, 1.0);
+        let (way, ratio) = self.survey_tools(span);
+        if self.motion.rods.is_empty() {
+            self.bodies.iter_mut().for_each(|body| body.contacts.forget());
+            return 1;
+        }
         let mut near = false;
         for body in &mut self.bodies {
-            let coast = body.fastest_node() * self.config.step;
+            let coast = body.fastest_node() * self.config.step + way;
             near |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, coast);
             // What is pushed pushes its neighbours: all of the surface may come to touch.
             body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, f64::INFINITY);
         }
-        if near { (0.5 * self.parts_of_fast_tools()).ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
+        if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
     fn not_converged(&self, body: usize, report: &ImplicitReport) -> StepError {

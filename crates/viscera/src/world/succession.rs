@@ -2,6 +2,9 @@ use super::{World, WorldError};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::math::Scalar;
 
+/// The largest number of steps up to which time is exact.
+const MOST_STEPS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+
 impl<T: Scalar> World<T> {
     /// Goes on from where `other` is: this world was built anew with another law, model, integrator, step or precision, and takes over
     /// places, velocities, cuts, instruments with what they hold and who leads them, and the time, to the nearest step.
@@ -42,7 +45,8 @@ impl<T: Scalar> World<T> {
         if let Some((body, _)) = self.bodies.iter().zip(&other.bodies).find(differs) {
             return Err(WorldError::OtherMesh { body: body.name().into() });
         }
-        self.steps = (other.time() / self.config.step).round() as u64;
+        // A step so short that the past has no number in it begins to count anew from the largest that is exact.
+        self.steps = (other.time() / self.config.step).round().min(MOST_STEPS) as u64;
         for (body, of) in self.bodies.iter_mut().zip(&other.bodies) {
             body.continue_from(of);
         }

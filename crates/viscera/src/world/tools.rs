@@ -9,6 +9,9 @@ use crate::math::{Scalar, Vec3};
 /// The trigger from which on jaws hold.
 const CLOSED: f64 = 0.5;
 
+/// Parts of a step in which the speed of tools is looked at.
+const GLANCES: u32 = 8;
+
 /// How the tools move: memory that means nothing between steps.
 #[derive(Debug, Default)]
 pub(super) struct ToolMotion {
@@ -50,7 +53,7 @@ impl<T: Scalar> World<T> {
         let (hand, pose) = (self.tools[id.0].hand, self.tools[id.0].pose);
         let pose =
             if hand.is_some() { instrument.mount().guide(pose) } else { scripted_pose(&instrument, self.time()) };
-        self.tools[id.0] = ToolState { hand, ..ToolState::new(pose) };
+        self.tools[id.0] = ToolState { hand, has_moved: hand.is_some(), ..ToolState::new(pose) };
         self.instruments[id.0] = Some(Box::new(instrument));
         self.reserve_for_tools();
         Ok(())
@@ -69,7 +72,8 @@ impl<T: Scalar> World<T> {
     }
 
     /// Leads an instrument by hand, over its path, until [`World::release_tool`]: at the end of the next step it is where `input`
-    /// says, and on the way it goes straight. Tissue in between is pushed along, however fast it goes.
+    /// says, and on the way it goes straight. Tissue in between is pushed along, however fast it goes. One that has not taken a step yet is
+    /// put there at once.
     ///
     /// # Errors
     /// [`WorldError::MissingInstrument`] for one that is not there; [`WorldError::Instrument`] for a pose that is none.
@@ -81,7 +85,12 @@ impl<T: Scalar> World<T> {
             let (name, range) = ("trigger", "between 0 and 1");
             return Err(InstrumentError::OutOfRange { kind, name, value: input.trigger, range }.into());
         }
-        self.tools[id.0].hand = Some(ToolInput { trigger: input.trigger.clamp(0.0, 1.0), ..input });
+        let pose = self.instrument(id).mount().guide(input.pose);
+        let tool = &mut self.tools[id.0];
+        tool.hand = Some(ToolInput { trigger: input.trigger.clamp(0.0, 1.0), ..input });
+        if !tool.has_moved {
+            tool.pose = pose;
+        }
         Ok(())
     }
 
@@ -242,7 +251,7 @@ impl<T: Scalar> World<T> {
     pub(super) fn settle_tools(&mut self, span: &Span) {
         let per_second = 1.0 / (span.to - span.from);
         for (number, (tool, goal)) in self.tools.iter_mut().zip(&self.motion.goals).enumerate() {
-            (tool.pose, tool.trigger) = (goal.pose, goal.trigger);
+            (tool.pose, tool.trigger, tool.has_moved) = (goal.pose, goal.trigger, true);
             let loads = || self.bodies.iter().map(|body| &body.contacts.loads[number]);
             let mean = |of: fn(&crate::contact::ToolLoad) -> Vec3<f64>| {
                 loads().fold(Vec3::ZERO, |sum, load| sum + of(load)) * per_second
@@ -267,9 +276,19 @@ impl<T: Scalar> World<T> {
         ToolUse { span: *span, from, to: tool.pose, trigger: tool.trigger, is_led: tool.hand.is_some() }
     }
 
-    /// In how many parts an explicit step has to be divided so that no tool that may touch goes farther in one than half of its radius.
-    pub(super) fn parts_of_fast_tools(&self) -> f64 {
-        self.motion.rods.iter().map(|rod| 2.0 * rod.way() / rod.start.radius).fold(0.0, f64::max)
+    /// How far tools would go in the step at the highest speed that they have in it [m], and the largest ratio of that to the radius: a path
+    /// may lead there and back. Leaves the rods as they go from one end of the step to the other.
+    pub(super) fn survey_tools(&mut self, span: &Span) -> (f64, f64) {
+        let (mut way, mut ratio) = (0.0f64, 0.0f64);
+        for part in 0..GLANCES {
+            self.move_tools(span, f64::from(part) / f64::from(GLANCES), f64::from(part + 1) / f64::from(GLANCES));
+            for rod in &self.motion.rods {
+                way = way.max(rod.way() * f64::from(GLANCES));
+                ratio = ratio.max(rod.way() * f64::from(GLANCES) / rod.start.radius);
+            }
+        }
+        self.move_tools(span, 0.0, 1.0);
+        (way, ratio)
     }
 }
 
