@@ -252,6 +252,7 @@ fn the_waiting_liver_hangs_by_its_weight() {
     let weight = 9.81 * observed.mass;
     assert!((observed.reaction.y / weight - 1.0).abs() < 0.01, "{} N carry {weight} N", observed.reaction.y);
     assert!(observed.inverted_cells == 0 && observed.max_displacement > 5e-3, "{observed:?}");
+}
 
 /// What the probe and what is fixed give the liver is what its momentum gains, gravity's share included. Pressed, it carries no tissue within
 /// its radius; drawn along x, it drags the lobe along x; withdrawn, it feels nothing.
