@@ -240,6 +240,20 @@ fn a_liver_that_was_turned_inside_out_finds_its_shape_again() {
     }
 }
 
+/// The liver that waits for hands hangs from its back: what is held there carries its weight.
+///
+/// It is damped so much that it comes to rest in its two seconds, and made of larger cells.
+#[test]
+fn the_waiting_liver_hangs_by_its_weight() {
+    let overrides = [("body.liver.damping", "12 1/s"), ("body.liver.mesh.edge", "25 mm"), ("duration", "4 s")];
+    let mut built = run("liver.toml", &overrides);
+    let liver = built.bodies["liver"];
+    let observed = built.world.observe(liver);
+    let weight = 9.81 * observed.mass;
+    assert!((observed.reaction.y / weight - 1.0).abs() < 0.01, "{} N carry {weight} N", observed.reaction.y);
+    assert!(observed.inverted_cells == 0 && observed.max_displacement > 5e-3, "{observed:?}");
+}
+
 /// What the probe and what is fixed give the liver is what its momentum gains, gravity's share included. Pressed, it carries no tissue within
 /// its radius; drawn along x, it drags the lobe along x; withdrawn, it feels nothing.
 #[test]

@@ -21,6 +21,7 @@ use viscera::world::{AttachmentId, BodyId, InstrumentId, World, WorldConfig, Wor
 use crate::error::SceneErrors;
 use crate::file::{InstrumentFile, SceneFile};
 use crate::scene::Scene;
+pub use mesh::Meshes;
 use site::Site;
 
 /// A world that is ready to run, and the names that the scene gives to what is in it.
@@ -56,6 +57,14 @@ impl Scene {
     /// All that [`check`](Self::check) finds; and the first file that cannot be read, region that selects nothing, law
     /// that the model does not compute, or substep that is too long.
     pub fn build<T: Precision>(&self) -> Result<BuiltScene<T>, SceneErrors> {
+        self.build_reusing(&mut Meshes::default())
+    }
+
+    /// The same, where `meshes` has what was read and made before by scenes with the same files.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn build_reusing<T: Precision>(&self, meshes: &mut Meshes) -> Result<BuiltScene<T>, SceneErrors> {
         let file = self.check()?;
         let root = Site::root(self);
         let config = WorldConfig {
@@ -68,7 +77,7 @@ impl Scene {
         let mut bodies = IndexMap::new();
         for (name, described) in &file.body {
             let site = root.key("body").key(name);
-            let (body, of_mesh) = body::body(name, described, &site)?;
+            let (body, of_mesh) = body::body(name, described, meshes, &site)?;
             notices.extend(of_mesh.into_iter().map(|notice| (name.clone(), notice)));
             let id = world.add(body).map_err(|error| match &error {
                 WorldError::Body(of_body) => body::blame(of_body, &site),

@@ -8,6 +8,7 @@ mod model_plan;
 mod removals;
 mod simulated;
 mod state;
+mod stress;
 
 pub use error::BodyError;
 pub(crate) use guide::Guides;

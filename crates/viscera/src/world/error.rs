@@ -103,6 +103,14 @@ pub enum WorldError {
     /// The snapshot is of a world with other bodies or instruments.
     #[error("the snapshot belongs to a world with other bodies or instruments; restore it there")]
     ForeignSnapshot,
+    /// A world cannot go on from another one whose body has other nodes or cells.
+    #[error(
+        "body `{body}` has another mesh there: only bodies with the same nodes and cells can go on from one another"
+    )]
+    OtherMesh {
+        /// Name of the body.
+        body: String,
+    },
     /// The body makes no sense.
     #[error(transparent)]
     Body(#[from] BodyError),

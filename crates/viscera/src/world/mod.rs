@@ -8,6 +8,7 @@ mod snapshot;
 mod statics;
 mod step;
 mod step_implicit;
+mod succession;
 mod tools;
 
 pub use attachment::{Attachment, AttachmentId};
