@@ -35,12 +35,7 @@ impl Hand {
 
     /// A handle of `mass` [kg, > 0] that yields to the force, between fingers of `stiffness` [N/m, ≥ 0] and `damping` [N s/m, ≥ 0]
     /// which go along `way` [m]. With neither it flies freely.
-    pub fn yielding(
-        mass: f64,
-        stiffness: f64,
-        damping: f64,
-        way: impl Fn(f64) -> Vector + Send + 'static,
-    ) -> Self {
+    pub fn yielding(mass: f64, stiffness: f64, damping: f64, way: impl Fn(f64) -> Vector + Send + 'static) -> Self {
         Self { yields: Some(Yielding { mass, stiffness, damping }), ..Self::on_rails(way) }
     }
 

@@ -87,7 +87,11 @@ impl Limiter {
     /// Takes from the part along the motion what is above the power.
     fn within_power(&self, force: Vector, velocity: Vector) -> Vector {
         let given = force.dot(velocity);
-        if given <= self.limits.power { force } else { force - velocity * ((given - self.limits.power) / velocity.squared_norm()) }
+        if given <= self.limits.power {
+            force
+        } else {
+            force - velocity * ((given - self.limits.power) / velocity.squared_norm())
+        }
     }
 
     /// The force that was given last heats the motors for `dt` [s].

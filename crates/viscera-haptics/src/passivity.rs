@@ -20,7 +20,7 @@ pub struct Passivity {
     /// The most that is remembered of what the hand has brought [J, > 0]. Tissue keeps what dissipates in it; without an end to the
     /// count, a long rub would pay for an hour of trembling.
     pub capacity: f64,
-    /// The strongest damper [N s/m, > 0]: the device must bear it without trembling itself.
+    /// The strongest damper, beyond what takes away the push [N s/m, > 0]: the device must bear it without trembling itself.
     pub damping: f64,
 }
 
@@ -86,7 +86,9 @@ impl PassivityController {
         if missing <= 0.0 || squared_speed <= 0.0 {
             return force;
         }
-        force - velocity * (missing / (dt * squared_speed)).min(self.settings.damping)
+        // To push less is safe at any strength; what brakes beyond that is bounded.
+        let push = (force.dot(velocity) / squared_speed).max(0.0);
+        force - velocity * (missing / (dt * squared_speed)).min(push + self.settings.damping)
     }
 
     /// Takes note of the force that was given, to a hand at `position` [m].

@@ -47,7 +47,9 @@ pub struct Pose {
 pub enum SampleError {
     /// A number of it is infinite or none: the simulation has diverged, or divided by zero on the way. The sample is left out, and
     /// the watchdog sees to the force if more of them follow.
-    #[error("the sample's {what} is not a finite number: it is left out, as what the simulation gave for it cannot be felt")]
+    #[error(
+        "the sample's {what} is not a finite number: it is left out, as what the simulation gave for it cannot be felt"
+    )]
     NotFinite {
         /// Which.
         what: &'static str,

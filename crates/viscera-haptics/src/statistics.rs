@@ -183,9 +183,16 @@ impl Times {
     }
 
     fn spread(&self) -> Spread {
-        let Some(histogram) = self.0.as_ref().filter(|histogram| !histogram.is_empty()) else { return Spread::default() };
+        let Some(histogram) = self.0.as_ref().filter(|histogram| !histogram.is_empty()) else {
+            return Spread::default();
+        };
         let quantile = |share: f64| histogram.value_at_quantile(share) as f64 * 1e-9;
-        Spread { median: quantile(0.5), p99: quantile(0.99), p999: quantile(0.999), longest: histogram.max() as f64 * 1e-9 }
+        Spread {
+            median: quantile(0.5),
+            p99: quantile(0.99),
+            p999: quantile(0.999),
+            longest: histogram.max() as f64 * 1e-9,
+        }
     }
 }
 
