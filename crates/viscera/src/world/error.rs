@@ -60,6 +60,12 @@ pub enum WorldError {
         /// How many cells there are.
         cells: usize,
     },
+    /// An instrument that is not there: it was taken out, or is of another world.
+    #[error("there is no instrument {instrument}; it was taken out, or belongs to another world")]
+    MissingInstrument {
+        /// Its number.
+        instrument: usize,
+    },
     /// The snapshot is of a world with other bodies or instruments.
     #[error("the snapshot belongs to a world with other bodies or instruments; restore it there")]
     ForeignSnapshot,
