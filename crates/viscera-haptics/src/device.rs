@@ -95,7 +95,7 @@ pub trait Device: Send {
 pub struct Reading {
     /// Of the point on which the force acts [m].
     pub position: Vector,
-    /// Axes of the handle as columns: a rotation.
+    /// Axes of the handle as columns, a rotation. The third points from the handle to its tip.
     pub orientation: Matrix,
     /// Of that point [m/s], where the device measures it; found from the positions otherwise.
     pub velocity: Option<Vector>,

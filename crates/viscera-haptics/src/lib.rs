@@ -10,6 +10,7 @@
 //! * [`Channel`] is all of this as one function of time, reading and sample: no clock, no thread, the same bits every time.
 //! * [`run`] calls it once a millisecond by a [`Clock`], in a thread of its own with [`HapticThread::start`].
 //! * [`Device`] is what a driver provides. [`EmulatedDevice`] is one for tests and for whoever has none.
+//! * [`Tool`] is the simulation's part: it leads an instrument of a world to the pose, and asks the tissue for the sample.
 //!
 //! The simulation and the channel share nothing but two [`mailbox`]es: neither ever waits for the other.
 //!
@@ -47,6 +48,7 @@ mod sample;
 mod setting;
 mod statistics;
 mod thread;
+mod tool;
 mod velocity;
 mod watchdog;
 mod workspace;
@@ -64,6 +66,7 @@ pub use sample::{Contact, Pose, Sample, SampleError};
 pub use setting::SettingError;
 pub use statistics::{Recorder, Spread, Statistics};
 pub use thread::{HapticThread, Priority, Report, SimulationSide, StartError};
+pub use tool::{Tool, ToolError};
 pub use velocity::VelocityEstimate;
 pub use watchdog::{Watchdog, WatchdogState};
 pub use workspace::Workspace;

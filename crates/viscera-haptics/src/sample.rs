@@ -34,7 +34,7 @@ pub struct Pose {
     pub time: f64,
     /// Of its tip [m].
     pub position: Vector,
-    /// Axes of the handle as columns.
+    /// Axes of the handle as columns; the third points from the handle to its tip.
     pub orientation: Matrix,
     /// Of its tip [m/s].
     pub velocity: Vector,

@@ -84,7 +84,7 @@ fn held(
         .damping(3.0)
         .fix(Region::Named("back".into()));
     world.add(liver)?;
-    let grasper = world.add_instrument(Grasper { path, radius: RADIUS, close: 0.0, open: None })?;
+    let grasper = world.add_instrument(Grasper { path, radius: RADIUS, close: 0.0, ..Grasper::default() })?;
     Ok((world, grasper))
 }
 
