@@ -231,6 +231,15 @@ impl<T: Scalar> SimulatedBody<T> {
         self.boundary.surface(&self.state.removed).collect()
     }
 
+    /// The triangles of the current surface, and the cell behind each.
+    pub(crate) fn surface_cells(&self) -> impl Iterator<Item = ([u32; 3], u32)> + '_ {
+        let there = |cell: u32| !self.state.removed[cell as usize];
+        self.boundary.faces.iter().filter_map(move |face| match face.cells {
+            (first, second) if there(first) => (!second.is_some_and(there)).then_some((face.nodes, first)),
+            (_, second) => second.filter(|&cell| there(cell)).map(|cell| (face.nodes, cell)),
+        })
+    }
+
     /// How far each node is burnt, from 0 to 1, which it is on the rim of a burnt cut.
     pub fn seared(&self) -> &[T] {
         &self.state.seared

@@ -58,6 +58,13 @@ fn crossing(&[a, b, c]: &[Point; 3], from: Point, to: Point) -> Option<([f64; 3]
     (parts.iter().all(|&part| part >= 0.0) && whole > 0.0).then(|| (parts.map(|part| part / whole), along))
 }
 
+/// Distance of a place to a triangle [m].
+pub(crate) fn distance_to_triangle(corners: &[Point; 3], place: Point) -> f64 {
+    let [a, b, c] = *corners;
+    let [u, v, w] = weights_of_closest(corners, place);
+    (a * u + b * v + c * w - place).norm()
+}
+
 /// Barycentric weights of the point of a triangle that is closest to a place.
 ///
 /// Source: Ericson, Real-Time Collision Detection (2005), section 5.1.5.

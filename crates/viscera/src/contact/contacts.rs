@@ -82,6 +82,13 @@ impl Contacts {
         self.list.clear();
     }
 
+    /// Forgets what touches and what might: no node goes too far then.
+    pub(crate) fn forget(&mut self) {
+        self.list.clear();
+        self.candidates.clear();
+        self.reach = f64::INFINITY;
+    }
+
     pub(crate) fn clear_loads(&mut self) {
         self.loads.fill(ToolLoad::default());
     }

@@ -18,6 +18,7 @@ mod sweep;
 mod tool_frame;
 
 pub use capsule::Capsule;
+pub(crate) use closest::distance_to_triangle;
 pub use contacts::{Contact, Contacts, ToolLoad};
 pub(crate) use impulses::Nodes;
 pub use springs::Traction;

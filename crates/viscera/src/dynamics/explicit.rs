@@ -65,6 +65,12 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
+/// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
+pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
+    drift(body, dt, drive, stages);
+    kick(body, dt, drive, stages);
+}
+
 /// The first half of a sub-step of `dt` [s]: a kick, the drift, and what tools do about it. Internal and external forces must be those
 /// of its beginning.
 pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {

@@ -1,5 +1,6 @@
 //! The world: bodies, instruments, a clock.
 
+mod attachment;
 mod config;
 mod error;
 mod observables;
@@ -9,6 +10,7 @@ mod step;
 mod step_implicit;
 mod tools;
 
+pub use attachment::{Attachment, AttachmentId};
 pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
 pub use observables::{BodyObservables, InsideOut, InstrumentObservables};
@@ -20,6 +22,7 @@ use crate::dynamics::implicit::ImplicitMemory;
 use crate::instrument::{Instrument, ToolState};
 use crate::math::Scalar;
 use crate::model::Precision;
+use attachment::Ties;
 use tools::ToolMotion;
 
 /// Number of a body in its world.
@@ -41,6 +44,7 @@ pub struct World<T: Scalar> {
     /// The instruments as they are now.
     tools: Vec<ToolState>,
     motion: ToolMotion,
+    attachments: Vec<Ties>,
     /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
     steps: u64,
     /// Memory for the cells that an instrument removes.
@@ -61,6 +65,7 @@ impl<T: Scalar> World<T> {
             instruments: Vec::new(),
             tools: Vec::new(),
             motion: ToolMotion::default(),
+            attachments: Vec::new(),
             steps: 0,
             removable: Vec::new(),
         })

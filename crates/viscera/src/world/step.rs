@@ -1,5 +1,6 @@
 //! One step of a world.
 
+use super::attachment::Aim;
 use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
@@ -87,6 +88,7 @@ impl<T: Scalar> World<T> {
         stages.run(Stage::Guard, || self.keep());
         let Motion { substeps, retries, implicit } = self.move_bodies(&span, stages).inspect_err(|_| self.undo())?;
         stages.run(Stage::Instruments, || self.settle_tools(&span));
+        self.settle_attachments();
         let removed_cells = stages.run(Stage::Cutting, || self.cut(&span));
         self.steps += 1;
         Ok(StepReport { time: span.to, substeps, retries, removed_cells, implicit })
@@ -191,20 +193,24 @@ impl<T: Scalar> World<T> {
     fn approach(&mut self, span: &Span, reach: f64) -> u32 {
         self.lead_tools(span);
         self.move_tools(span, 0.0, 1.0);
+        if self.motion.rods.is_empty() {
+            self.bodies.iter_mut().for_each(|body| body.contacts.forget());
+            return 1;
+        }
         let tool_way = self.motion.rods.iter().map(|rod| rod.way() + rod.start.radius).fold(0.0, f64::max);
         let fall = Vec3::from(self.config.gravity).norm() * self.config.step;
         let mut touches = false;
         for body in &mut self.bodies {
-            body.contacts.clear();
             let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * tool_way;
-            let reach = if self.motion.rods.is_empty() { f64::INFINITY } else { reach * expected };
-            touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach);
+            body.contacts.forget();
+            touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach * expected);
         }
         if touches { self.parts_of_fast_tools().ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
     /// Moves all bodies by equal sub-steps over the step.
     fn advance(&mut self, span: &Span, substeps: u32, stages: Stages) {
+        self.begin_attachments();
         let dt = self.config.step / f64::from(substeps);
         let gravity = Vec3::from(self.config.gravity).cast();
         for body in &mut self.bodies {
@@ -219,9 +225,12 @@ impl<T: Scalar> World<T> {
             for body in &mut self.bodies {
                 explicit::drift(body, dt, &drive, stages);
             }
+            self.hold_together(dt, Aim::Place);
+            let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             for body in &mut self.bodies {
                 explicit::kick(body, dt, &drive, stages);
             }
+            self.hold_together(dt, Aim::Velocity);
         }
     }
 

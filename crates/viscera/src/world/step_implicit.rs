@@ -52,6 +52,10 @@ impl<T: Scalar> World<T> {
     fn approach_in_time(&mut self, span: &Span) -> u32 {
         self.lead_tools(span);
         self.move_tools(span, 0.0, 1.0);
+        if self.motion.rods.is_empty() {
+            self.bodies.iter_mut().for_each(|body| body.contacts.forget());
+            return 1;
+        }
         let mut near = false;
         for body in &mut self.bodies {
             let coast = body.fastest_node() * self.config.step;

@@ -5,7 +5,7 @@
 //! | 8 | `viscera\0` |
 //! | 2 | format, little-endian |
 //! | 1 | bits of a number: 32 or 64 |
-//! | … | steps, the tools and whether each is there, and of each body its fingerprint and its state, as postcard encodes them |
+//! | … | steps, the tools and whether each is there, forces of attachments, and of each body its fingerprint and its state, as postcard encodes them |
 //! | 4 | CRC-32 of all before, little-endian |
 //!
 //! Numbers keep their bits. Force models are left out: they follow from the mesh and the cells that were removed, in their
@@ -14,6 +14,7 @@
 use super::{BodySnapshot, Snapshot, SnapshotError};
 use crate::body::{BodyError, BodyState, Models, NodeMotion, SimulatedBody};
 use crate::instrument::ToolState;
+use crate::math::Vec3;
 use crate::model::Precision;
 use crate::world::World;
 
@@ -34,7 +35,7 @@ impl<T: Precision> Snapshot<T> {
         let mut head = MARK.to_vec();
         head.extend(FORMAT.to_le_bytes());
         head.push(bits::<T>());
-        let mut bytes = postcard::to_extend(&(self.steps, &self.tools, bodies), head)
+        let mut bytes = postcard::to_extend(&(self.steps, &self.tools, &self.attachments, bodies), head)
             .expect("numbers, and lists of known length, always have an encoding");
         let checksum = crc32fast::hash(&bytes);
         bytes.extend(checksum.to_le_bytes());
@@ -43,7 +44,7 @@ impl<T: Precision> Snapshot<T> {
 }
 
 /// What stands between head and checksum.
-type Payload<T> = (u64, Vec<(bool, ToolState)>, Vec<(u32, BodyState<T>)>);
+type Payload<T> = (u64, Vec<(bool, ToolState)>, Vec<Vec3<f64>>, Vec<(u32, BodyState<T>)>);
 
 impl<T: Precision> World<T> {
     /// Reads a snapshot of this world, or of one that was built alike, from bytes. The world itself is not changed:
@@ -55,7 +56,7 @@ impl<T: Precision> World<T> {
     /// # Errors
     /// [`SnapshotError`]: bytes of something else, damaged, of another version, precision or world.
     pub fn read_snapshot(&self, bytes: &[u8]) -> Result<Snapshot<T>, SnapshotError> {
-        let (steps, tools, bodies) = decode::<T>(bytes)?;
+        let (steps, tools, attachments, bodies) = decode::<T>(bytes)?;
         let instruments = tools.len();
         if !self.has_tools(&tools) || bodies.len() != self.bodies.len() {
             let count = |bodies, instruments| format!("{bodies} bodies and {instruments} instruments");
@@ -70,7 +71,11 @@ impl<T: Precision> World<T> {
             Ok(body.with_models(state)?)
         };
         let bodies = self.bodies.iter().zip(bodies).map(of_body).collect::<Result<_, _>>()?;
-        Ok(Snapshot { steps, bodies, tools })
+        if attachments.len() != self.attachments.len() {
+            let what = format!("it has {} attachments, and this one {}", attachments.len(), self.attachments.len());
+            return Err(SnapshotError::Foreign { what });
+        }
+        Ok(Snapshot { steps, bodies, tools, attachments })
     }
 }
 

@@ -6,7 +6,7 @@ pub use error::SnapshotError;
 use super::{World, WorldError};
 use crate::body::{BodyState, SimulatedBody};
 use crate::instrument::ToolState;
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::model::frequency::FrequencyBound;
 
 /// All that changes about a world, at one moment: put back, it goes on with the same bits, also after cuts. As bytes
@@ -16,6 +16,8 @@ pub struct Snapshot<T: Scalar> {
     bodies: Vec<BodySnapshot<T>>,
     /// Every tool, and whether it is there.
     tools: Vec<(bool, ToolState)>,
+    /// Forces of the attachments [N].
+    attachments: Vec<Vec3<f64>>,
 }
 
 /// All that changes about a body.
@@ -37,7 +39,8 @@ impl<T: Scalar> World<T> {
         let bodies = self.bodies.iter().map(of_body).collect();
         let tools = self.instruments.iter().zip(&self.tools);
         let tools = tools.map(|(instrument, &tool)| (instrument.is_some(), tool)).collect();
-        Snapshot { steps: self.steps, bodies, tools }
+        let attachments = self.attachments.iter().map(|ties| ties.force).collect();
+        Snapshot { steps: self.steps, bodies, tools, attachments }
     }
 
     /// Goes back to a snapshot of this world.
@@ -46,6 +49,7 @@ impl<T: Scalar> World<T> {
     /// [`WorldError::ForeignSnapshot`] for a snapshot of a world with other bodies or instruments; nothing is changed.
     pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), WorldError> {
         let fits = self.has_tools(&snapshot.tools)
+            && self.attachments.len() == snapshot.attachments.len()
             && self.bodies.len() == snapshot.bodies.len()
             && self.bodies.iter().zip(&snapshot.bodies).all(|(body, of_body)| body.fingerprint == of_body.fingerprint);
         if !fits {
@@ -59,6 +63,7 @@ impl<T: Scalar> World<T> {
             body.update_skin();
         }
         self.tools.iter_mut().zip(&snapshot.tools).for_each(|(tool, &(_, kept))| *tool = kept);
+        self.attachments.iter_mut().zip(&snapshot.attachments).for_each(|(ties, &force)| ties.force = force);
         self.reserve_for_tools();
         Ok(())
     }
