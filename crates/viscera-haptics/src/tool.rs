@@ -26,6 +26,10 @@ use crate::{Contact, Matrix, Pose, Sample, Vector};
 pub struct Tool {
     instrument: InstrumentId,
     probing: Option<Probing>,
+    /// Time in which it follows the hand [s].
+    follows: f64,
+    /// Where it is led to [m], and of which time that is [s].
+    led: Option<(f64, Vector)>,
     samples: u64,
     stiffness: Option<Matrix>,
 }
@@ -51,7 +55,7 @@ pub enum ToolError {
 impl Tool {
     /// An instrument that the hand leads. The channel learns the stiffness from the samples.
     pub fn new(instrument: InstrumentId) -> Self {
-        Self { instrument, probing: None, samples: 0, stiffness: None }
+        Self { instrument, probing: None, follows: 0.0, led: None, samples: 0, stiffness: None }
     }
 
     /// The same, and in every so many steps the stiffness is found by three more, each with the tool off by `distance` [m] along
@@ -61,11 +65,33 @@ impl Tool {
         self
     }
 
+    /// The same, and it follows the hand with a delay of `time` [s, ≥ 0; 0 by default], as if a spring and a damper lay between them: the
+    /// channel makes up for the distance by the stiffness. For steps of a millisecond: held tissue has a mass, and by its inertia a
+    /// count Δx of the device's encoder is felt as m Δx/Δt², a newton for 55 µm and 20 g.
+    pub fn following(mut self, time: f64) -> Self {
+        self.follows = time;
+        self
+    }
+
+    /// Where the instrument is led to for a hand at this pose: the rest of the way falls with exp(−t/τ).
+    fn lead(&mut self, pose: &Pose) -> Pose {
+        let position = match self.led {
+            Some((time, from)) if self.follows > 0.0 => {
+                let share = 1.0 - (-(pose.time - time) / self.follows).exp();
+                from + (pose.position - from) * share
+            }
+            _ => pose.position,
+        };
+        self.led = Some((pose.time, position));
+        Pose { position, ..*pose }
+    }
+
     /// Leads the instrument to the pose within one step of the world, and says what the tissue answers.
     ///
     /// # Errors
     /// [`ToolError`].
     pub fn step<T: Scalar>(&mut self, world: &mut World<T>, pose: &Pose) -> Result<Sample, ToolError> {
+        let pose = &self.lead(pose);
         let due = self.probing.filter(|probing| self.samples.is_multiple_of(probing.every));
         let before = due.map(|_| world.snapshot());
         let (force, contact) = self.answer(world, pose, Vector::ZERO)?;
@@ -96,8 +122,6 @@ impl Tool {
         let pose_there = ToolPose { tip: pose.position + offset, ..tool_pose(pose) };
         world.set_tool(self.instrument, ToolInput { pose: pose_there, trigger: pose.trigger })?;
         world.step()?;
-        // What the tissue needs to be held, apart from the inertia of the held nodes themselves: by that, each count of the device's
-        // encoder would be felt as m Δx/Δt², newtons for grams at steps of a millisecond.
         let seen = world.observe_instrument(self.instrument);
         let contact = if seen.held_nodes > 0 { Contact::Holding } else { Contact::Pressing };
         Ok((-seen.force, contact))

@@ -91,3 +91,20 @@ fn a_hand_feels_the_bar_that_it_presses() {
     let (energy, stored) = (channel.state().energy, 0.5 * expected * depth);
     assert!(energy > stored && energy < 1.5 * stored, "{energy} J, {stored} J stored");
 }
+
+/// Led by x̃ ← x̃ + (x − x̃)(1 − e), e = exp(−Δt/τ), a tool is v Δt e/(1 − e) behind a hand of constant velocity v.
+#[test]
+fn a_tool_that_follows_is_behind_the_hand_by_its_time() {
+    let (mut world, id) = bar(Integrator::Explicit(Substep::Automatic), 1e-3);
+    let (speed, delay) = (0.02, 5e-3);
+    let mut tool = Tool::new(id).following(delay);
+    let mut behind = 0.0;
+    for tick in 0..100 {
+        let time = f64::from(tick) * 1e-3;
+        let there = pose(time, Vector::new(speed * time, 0.0, 0.0));
+        behind = there.position.x - tool.step(&mut world, &there).unwrap().position.x;
+    }
+    let share = (-1e-3_f64 / delay).exp();
+    let expected = speed * 1e-3 * share / (1.0 - share);
+    assert!((behind / expected - 1.0).abs() < 1e-6, "{behind} m, not {expected} m");
+}
