@@ -47,16 +47,17 @@ impl Contacts {
         self.account(rods, 1.0);
     }
 
-    /// Impulses after the second kick.
+    /// Impulses after the second kick, which damping has divided by `damping`: they were given before that, so that they are larger.
     pub(crate) fn solve_kick<T: Scalar, F: Fn(u32) -> Filter<T>>(
         &mut self,
         nodes: &mut Nodes<'_, T, F>,
         rods: &[MovingCapsule],
         dt: f64,
+        damping: f64,
     ) {
         self.list.retain(|contact| contact.push > 0.0);
         self.solve_impulses(nodes, dt, false);
-        self.account(rods, 1.0);
+        self.account(rods, damping);
     }
 
     fn find_mobilities<T: Scalar, F: Fn(u32) -> Filter<T>>(&mut self, nodes: &Nodes<'_, T, F>) {

@@ -133,8 +133,8 @@ impl Contacts {
         }
     }
 
-    /// Adds the springs' part of the matrix times x to `out`.
-    pub(crate) fn add_product<T: Scalar>(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+    /// Adds `scale` times the springs' part of the matrix times x to `out`.
+    pub(crate) fn add_product<T: Scalar>(&self, scale: f64, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
         for contact in &self.list {
             let (along, across) = contact.stiffnesses();
             if along == 0.0 {
@@ -144,7 +144,7 @@ impl Contacts {
             let way = of(0) + of(1) + of(2);
             let force = way * across + contact.normal * ((along - across) * contact.normal.dot(way));
             for (&node, &weight) in contact.nodes.iter().zip(&contact.weights) {
-                out[node as usize] += (force * weight).cast();
+                out[node as usize] += (force * (weight * scale)).cast();
             }
         }
     }

@@ -65,6 +65,16 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
+/// Prepares a body for the sub-steps of a step, over which the motions of nodes stay as they are: forces of its beginning, and the
+/// nodes that are not free.
+pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, time: f64, gravity: Vec3<T>, stages: Stages) {
+    body.update_internal_forces(stages);
+    stages.run(Stage::Loads, || body.update_external_forces(time, gravity));
+    let others = body.state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
+    body.driven.clear();
+    body.driven.extend(others.map(|(node, _)| Driven { node, position: Vec3::ZERO, velocity: Vec3::ZERO }));
+}
+
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
 pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     drift(body, dt, drive, stages);
@@ -84,12 +94,16 @@ pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, 
 /// The second half: the kick by the forces at the new places.
 pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     body.update_internal_forces(stages);
-    stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
+    // Weights do not change within a step.
+    if !body.loads.is_empty() {
+        stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
+    }
     stages.run(Stage::KickAndDrift, || kick_again(body, dt, drive));
     if !body.contacts.is_empty() {
         stages.run(Stage::Instruments, || {
+            let damping = 1.0 + 0.5 * dt * body.damping.to_f64();
             let (contacts, mut nodes) = touched(body);
-            contacts.solve_kick(&mut nodes, drive.rods, dt);
+            contacts.solve_kick(&mut nodes, drive.rods, dt, damping);
         });
     }
 }
@@ -159,13 +173,12 @@ fn kick_again<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_,
     }
 }
 
-/// Remembers the nodes that are not free.
+/// Remembers where the nodes are that are not free, and how fast.
 fn keep_driven<T: Scalar>(body: &mut SimulatedBody<T>) {
-    let state = &body.state;
-    body.driven.clear();
-    let others = state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
-    let kept = |(node, _)| Driven { node, position: state.positions[node], velocity: state.velocities[node] };
-    body.driven.extend(others.map(kept));
+    for driven in &mut body.driven {
+        driven.position = body.state.positions[driven.node];
+        driven.velocity = body.state.velocities[driven.node];
+    }
 }
 
 /// External forces, internal forces and masses of a block of nodes: what (R − F)/m comes from.

@@ -21,7 +21,7 @@ impl<T: Scalar> SimulatedBody<T> {
         let (frame, step) = (&drive.frames[tool], T::from_f64(dt));
         let target: Vec3<T> = frame.at_end(self.state.grips[node].cast()).cast();
         let wanted = (target - position) / step;
-        let (velocity, slips) = self.hold(held, wanted, drive, dt);
+        let (velocity, slips) = self.hold(held, wanted, drive, dt, 1.0);
         self.state.velocities[node] = velocity;
         self.state.positions[node] = if slips { velocity.mul_add(step, position) } else { target };
         if slips {
@@ -34,13 +34,15 @@ impl<T: Scalar> SimulatedBody<T> {
         let frame = &drive.frames[held.tool];
         let wanted =
             if frame.limit.is_finite() { (frame.way(self.state.grips[held.node].cast()) / dt).cast() } else { carried };
-        self.state.velocities[held.node] = self.hold(held, wanted, drive, dt).0;
+        // Damping has divided the second kick by this, and would have divided the impulse in it as well.
+        let damping = 1.0 + 0.5 * dt * self.damping.to_f64();
+        self.state.velocities[held.node] = self.hold(held, wanted, drive, dt, damping).0;
     }
 
     /// The velocity that a held node gets, and whether it slips: half of a sub-step's impulse is given at a time.
-    fn hold(&mut self, held: Held<T>, wanted: Vec3<T>, drive: &Drive<'_, T>, dt: f64) -> (Vec3<T>, bool) {
+    fn hold(&mut self, held: Held<T>, wanted: Vec3<T>, drive: &Drive<'_, T>, dt: f64, damping: f64) -> (Vec3<T>, bool) {
         let Held { node, tool, position } = held;
-        let (frame, mass) = (&drive.frames[tool], self.state.masses[node].to_f64());
+        let (frame, mass) = (&drive.frames[tool], self.state.masses[node].to_f64() * damping);
         let own = self.state.velocities[node];
         let impulse = (wanted - own).cast::<f64>() * mass;
         let most = 0.5 * frame.limit * dt;

@@ -4,7 +4,7 @@ use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::{TetQuality, VolumeMesh, scaled_jacobian};
+use crate::mesh::{VolumeMesh, radius_ratio, scaled_jacobian};
 use crate::stage::Stages;
 
 /// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
@@ -160,7 +160,7 @@ impl<T: Scalar> SimulatedBody<T> {
     fn worst_quality(&self) -> f64 {
         let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
         let quality = |cell: usize| match &self.mesh {
-            VolumeMesh::Tet(mesh) => TetQuality::of(mesh.cells[cell].map(place)).radius_ratio,
+            VolumeMesh::Tet(mesh) => radius_ratio(mesh.cells[cell].map(place)),
             VolumeMesh::Hex(mesh) => scaled_jacobian(&mesh.cells[cell].map(place)),
         };
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);

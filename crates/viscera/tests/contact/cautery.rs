@@ -23,7 +23,7 @@ fn pass(duration: f64, power: f64) -> World<f64> {
 /// What a slow pass burns through, a quick brush past only warms: not one cell goes, and what it touched is seared in part.
 #[test]
 fn a_brush_past_warms_and_a_slow_pass_cuts() {
-    let (brush, slow) = (pass(0.05, 40.0), pass(2.0, 40.0));
+    let (brush, slow) = (pass(0.05, 160.0), pass(2.0, 160.0));
     let id = brush.body_ids().next().unwrap();
     assert_eq!(brush.body(id).state().removed_count, 0);
     assert!(brush.body(id).seared().iter().any(|&seared| seared > 0.0 && seared < 1.0));

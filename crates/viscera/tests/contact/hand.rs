@@ -21,7 +21,7 @@ fn bar() -> (World<f64>, viscera::world::BodyId) {
 /// A tool is at the end of a step where the hand asked for it, and goes back to its path when it is let go.
 #[test]
 fn a_tool_goes_where_the_hand_leads_it() {
-    let (mut world, _) = bar();
+    let mut world = world::<f64>([0.0; 3], 5e-3, EXPLICIT);
     let path = Curve::piecewise_linear(vec![(0.0, Vector::ZERO), (1.0, Vector::new(0.0, 1.0, 0.0))]).unwrap();
     let mount = Mount::through(Vector::new(0.0, 0.4, 0.0));
     let id = world.add_instrument(Probe { path: path.clone(), mount, ..Probe::default() }).unwrap();

@@ -2,6 +2,7 @@
 
 use viscera::instrument::{InstrumentKind, ToolInput, ToolPose};
 use viscera::math::Mat3;
+use viscera::mesh::Region;
 use viscera::model::{Precision, TotalLagrangian};
 use viscera::world::{BodyId, Integrator, World};
 
@@ -23,12 +24,14 @@ impl Telling {
         (self.turn * x + self.shift) * self.length
     }
 
-    fn world<T: Precision>(&self, kind: InstrumentKind, integrator: Integrator) -> (World<T>, BodyId) {
+    /// A block, free or with its lower side fixed, and a tool.
+    fn world<T: Precision>(&self, kind: InstrumentKind, integrator: Integrator, free: bool) -> (World<T>, BodyId) {
         let mut world = world::<T>([0.0; 3], 5e-3, integrator);
-        let mut mesh = viscera::mesh::TetMesh::box_grid([4, 2, 3], [0.08, 0.04, 0.06]);
+        let mut mesh = viscera::mesh::TetMesh::box_grid([8, 4, 6], [0.08, 0.04, 0.06]);
         mesh.nodes.iter_mut().for_each(|node| *node = self.place(*node));
         let tissue = tissue(20e3 / self.length);
         let body = viscera::body::Body::new(mesh, 1000.0 / self.length.powi(3)).model(TotalLagrangian::new(tissue));
+        let body = if free { body } else { body.fix(Region::Named("y-min".into())) };
         let id = world.add(body).unwrap();
         world.add_instrument(kind.example::<T>(1.0 / self.length)).unwrap();
         (world, id)
@@ -43,7 +46,7 @@ impl Telling {
             let tip = Vector::new(0.041 + aside, 0.06 - down, 0.028 + 0.3 * aside);
             let direction = Vector::new(0.2, -1.0, 0.1);
             let pose = ToolPose { tip: self.place(tip), direction: self.turn * direction, roll: 0.0 };
-            world.set_tool(id, ToolInput { pose, trigger: if t > 0.5 { 1.0 } else { 0.0 } }).unwrap();
+            world.set_tool(id, ToolInput { pose, trigger: if t > 0.4 { 1.0 } else { 0.0 } }).unwrap();
             world.step().unwrap();
         }
     }
@@ -62,7 +65,7 @@ fn every_way(mut test: impl FnMut(InstrumentKind, Integrator)) {
 #[test]
 fn the_block_s_momentum_is_the_impulse_of_the_tool() {
     every_way(|kind, integrator| {
-        let (mut world, _) = PLAIN.world::<f64>(kind, integrator);
+        let (mut world, _) = PLAIN.world::<f64>(kind, integrator, true);
         let id = world.instrument_ids().next().unwrap();
         let (mut given, mut size) = (Vector::ZERO, 0.0);
         for step in 0..15 {
@@ -72,14 +75,14 @@ fn the_block_s_momentum_is_the_impulse_of_the_tool() {
         }
         let error = (momentum(&world) - given).norm() / size;
         assert!(size > 0.0, "{kind:?} must touch");
-        assert!(error < if integrator == EXPLICIT { 1e-12 } else { 1e-8 }, "{kind:?} {integrator:?}: {error:.2e}");
+        assert!(error < if integrator == EXPLICIT { 1e-12 } else { 1e-5 }, "{kind:?} {integrator:?}: {error:.2e}");
     });
 }
 
 /// Holding too: of jaws in explicit steps, exactly.
 #[test]
 fn the_block_s_momentum_is_the_impulse_of_jaws_that_hold() {
-    let (mut world, _) = PLAIN.world::<f64>(InstrumentKind::Grasper, EXPLICIT);
+    let (mut world, _) = PLAIN.world::<f64>(InstrumentKind::Grasper, EXPLICIT, true);
     let id = world.instrument_ids().next().unwrap();
     let (mut given, mut size) = (Vector::ZERO, 0.0);
     for step in 0..30 {
@@ -92,7 +95,7 @@ fn the_block_s_momentum_is_the_impulse_of_jaws_that_hold() {
 }
 
 fn displacements<T: Precision>(kind: InstrumentKind, integrator: Integrator, telling: &Telling) -> Vec<Vector> {
-    let (mut world, body) = telling.world::<T>(kind, integrator);
+    let (mut world, body) = telling.world::<T>(kind, integrator, false);
     telling.play(&mut world, 0, 30);
     let body = world.body(body);
     let back = |(now, rest): (&viscera::math::Vec3<T>, &Vector)| {
@@ -134,7 +137,7 @@ fn snapshots_bring_back_every_bit<T: Precision>() {
         (nodal, world.tool(world.instrument_ids().next().unwrap()).to_owned())
     };
     every_way(|kind, integrator| {
-        let (mut world, _) = PLAIN.world::<T>(kind, integrator);
+        let (mut world, _) = PLAIN.world::<T>(kind, integrator, false);
         PLAIN.play(&mut world, 0, 22);
         let (snapshot, bytes) = (world.snapshot(), world.snapshot().to_bytes());
         PLAIN.play(&mut world, 22, 30);
@@ -142,7 +145,7 @@ fn snapshots_bring_back_every_bit<T: Precision>() {
         world.restore(&snapshot).unwrap();
         PLAIN.play(&mut world, 22, 30);
         assert_eq!(bits(&world), end, "{kind:?} {integrator:?}");
-        let (mut other, _) = PLAIN.world::<T>(kind, integrator);
+        let (mut other, _) = PLAIN.world::<T>(kind, integrator, false);
         other.restore(&other.read_snapshot(&bytes).unwrap()).unwrap();
         PLAIN.play(&mut other, 22, 30);
         assert_eq!(bits(&other), end, "{kind:?} {integrator:?}, from bytes");
@@ -163,7 +166,7 @@ fn snapshots_bring_back_every_bit_in_single_precision() {
 #[test]
 fn no_step_allocates() {
     every_way(|kind, integrator| {
-        let (mut world, _) = PLAIN.world::<f64>(kind, integrator);
+        let (mut world, _) = PLAIN.world::<f64>(kind, integrator, false);
         for step in 0..30 {
             let allocated = allocation_counter::measure(|| PLAIN.play(&mut world, step, step + 1));
             assert_eq!(allocated.count_total, 0, "{kind:?} {integrator:?}, step {step}");

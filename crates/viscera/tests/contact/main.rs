@@ -2,6 +2,7 @@
 
 mod attachment;
 mod cautery;
+mod debug;
 mod friction;
 mod grip;
 mod hand;

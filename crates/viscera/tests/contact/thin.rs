@@ -53,9 +53,13 @@ fn assert_kept_out<T: Precision>(world: &World<T>, id: BodyId, what: &str) {
         .positions()
         .iter()
         .map(|p| p.cast::<f64>())
-        .filter(|p| Vector::new(p.x - tool.pose.tip.x, 0.0, p.z - tool.pose.tip.z).norm() < 2.0 * RADIUS + 5e-3);
+        .filter(|p| Vector::new(p.x - tool.pose.tip.x, 0.0, p.z - tool.pose.tip.z).norm() < RADIUS);
     let highest = under.map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    assert!(highest < tool.pose.tip.y + 5e-3, "{what}: tissue at {highest} m, the tip at {} m", tool.pose.tip.y);
+    assert!(
+        highest < tool.pose.tip.y - 0.9 * RADIUS + 1e-3,
+        "{what}: tissue at {highest} m, the tip at {} m",
+        tool.pose.tip.y
+    );
 }
 
 fn assert_thin_tissue_stays_out(integrator: Integrator, speed: f64, held: bool) {

@@ -26,7 +26,9 @@ pub struct ImplicitMemory<T> {
     pub(super) nodal: Vec<Vec3<T>>,
     /// Memory for forces of damping [N].
     pub(super) damping: Vec<Vec3<T>>,
-    /// The masses' part of the matrix [kg/s²].
+    /// Right-hand side of the linear system: what the forces lack, over the factor of the stiffness [N].
+    pub(super) rhs: Vec<Vec3<T>>,
+    /// The masses' part of the matrix, over the factor of the stiffness [kg/s²].
     pub(super) masses: Vec<T>,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
@@ -51,6 +53,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             coast: zeros(),
             coast_velocities: zeros(),
             lack: zeros(),
+            rhs: zeros(),
             correction: zeros(),
             prescribed: zeros(),
             nodal: zeros(),
