@@ -1,10 +1,12 @@
 use std::path::PathBuf;
 
+use viscera::curve::CurveError;
 use viscera::dynamics::quasi_static::StaticError;
 use viscera::material::MaterialError;
 use viscera::mesh::GenerateError;
 use viscera::model::ModelError;
 use viscera::world::{StepError, WorldError};
+use viscera_haptics::SampleError;
 
 /// Why a study could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +29,12 @@ pub enum ValidationError {
     /// A mesh of a study cannot be made: a mistake in the study.
     #[error(transparent)]
     Generate(#[from] GenerateError),
+    /// A path of a hand makes no sense: a mistake in the study.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+    /// A sample for the haptic channel makes no sense: the simulation of a study has diverged.
+    #[error(transparent)]
+    Sample(#[from] SampleError),
     /// A reference mesh cannot be read.
     #[error(transparent)]
     Mesh(#[from] viscera_io::ReadError),

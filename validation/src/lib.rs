@@ -12,6 +12,7 @@ mod setting;
 
 pub mod assembly_crossover;
 pub mod cantilevers;
+pub mod extrapolation;
 pub mod fixed_beam;
 pub mod frequencies;
 pub mod multigrid;
@@ -65,11 +66,13 @@ pub enum StudyKind {
     StepCost,
     /// Every model, law and integrator in shapes, scales and cuts that nothing should survive.
     Torture,
+    /// The force on a hand between two samples of the simulation.
+    Extrapolation,
 }
 
 impl StudyKind {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::FixedBeam,
         Self::Cantilevers,
         Self::Frequencies,
@@ -79,6 +82,7 @@ impl StudyKind {
         Self::Multigrid,
         Self::StepCost,
         Self::Torture,
+        Self::Extrapolation,
     ];
 
     /// Its name on the command line, and of its folder.
@@ -93,6 +97,7 @@ impl StudyKind {
             Self::Multigrid => "multigrid",
             Self::StepCost => "step-cost",
             Self::Torture => "torture",
+            Self::Extrapolation => "extrapolation",
         }
     }
 
@@ -111,6 +116,7 @@ impl StudyKind {
             Self::Multigrid => Ok(multigrid::study(settings.size)?.report()),
             Self::StepCost => Ok(step_cost::study(settings.size)?.report()),
             Self::Torture => Ok(torture::study(settings.size)?.report()),
+            Self::Extrapolation => Ok(extrapolation::study(settings.size)?.report()),
         }
     }
 }

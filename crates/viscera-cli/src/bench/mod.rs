@@ -2,10 +2,12 @@
 
 pub(crate) mod arguments;
 mod capacity;
+mod haptics;
 mod organ;
 mod round;
 mod search;
 mod soak;
+mod viewer;
 
 use crate::failure::Failure;
 use arguments::BenchCommand;
@@ -14,5 +16,6 @@ pub(crate) fn carry_out(command: &BenchCommand) -> Result<(), Failure> {
     match command {
         BenchCommand::Capacity(arguments) => capacity::capacity(arguments),
         BenchCommand::Soak(arguments) => soak::soak(arguments),
+        BenchCommand::Haptics(arguments) => haptics::haptics(arguments),
     }
 }
