@@ -86,6 +86,11 @@ impl Scene {
         Ok(files)
     }
 
+    /// The folder in which files that it names are looked for.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// A file that the scene names.
     pub(crate) fn path(&self, file: &Path) -> PathBuf {
         self.folder.join(file)

@@ -5,9 +5,11 @@ mod error;
 mod guide;
 mod load;
 mod model_plan;
+mod placement;
 mod removals;
 mod simulated;
 mod state;
+mod stress;
 
 pub use error::BodyError;
 pub(crate) use guide::Guides;

@@ -2,6 +2,7 @@
 
 mod config;
 mod error;
+mod forces;
 mod observables;
 mod snapshot;
 mod statics;
