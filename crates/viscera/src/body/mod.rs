@@ -17,6 +17,7 @@ pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub(crate) use model_plan::{ModelPlan, Models};
 pub use removals::Removals;
+pub(crate) use simulated::free_directions;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
 pub use state::{BodyState, NodeMotion, PastState};
 pub(crate) use state::{Driven, MotionBackup};

@@ -3,9 +3,10 @@
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
+use crate::contact::Contacts;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockJacobi, BlockMatrix, Ending, Multigrid, Problem};
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Filter, Multigrid, Problem};
 use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
@@ -34,12 +35,20 @@ impl<T: Scalar> Step<'_, T> {
         for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
             *mass = nodal * mass_factor;
         }
+        let contacts = &mut self.body.contacts;
+        let touches = !contacts.is_empty();
         let rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
             if memory.matrix.is_none() && memory.multigrid.is_none() {
                 let blocks = memory.preconditioner.blocks_mut();
                 for model in &state.models {
                     model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
+                }
+                if touches {
+                    set_stiffness(contacts, blocks, stiffness, &memory.masses, &memory.filters);
+                    contacts.add_blocks(stiffness.to_f64(), |row, column, block| {
+                        memory.preconditioner.add(row, column, block)
+                    });
                 }
             } else {
                 let mut sink = Sinks {
@@ -51,11 +60,20 @@ impl<T: Scalar> Step<'_, T> {
                 for model in &state.models {
                     model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
                 }
+                if touches {
+                    set_stiffness(contacts, sink.diagonal.blocks_mut(), stiffness, &memory.masses, &memory.filters);
+                    contacts.add_blocks(stiffness.to_f64(), |row, column, block| sink.add(row, column, block));
+                }
             }
             let rounding = rounding(memory, &state.positions);
             memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
             rounding
         });
+        if touches {
+            // Now that the springs have their stiffness, their forces belong to what is to be balanced.
+            self.find_lack();
+        }
+        let (state, memory) = (&self.body.state, &mut *self.memory);
         let executor = self.body.scratch.executor.clone();
         let mut tangent = Tangent {
             models: &state.models,
@@ -63,6 +81,7 @@ impl<T: Scalar> Step<'_, T> {
             scratch: &mut self.body.scratch,
             assembled: memory.matrix.as_mut(),
             masses: &memory.masses,
+            contacts: &self.body.contacts,
             stiffness,
             stages: self.stages,
         };
@@ -121,6 +140,21 @@ impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
             matrix.add(row, column, block);
         }
     }
+}
+
+/// Gives new contacts the stiffness that belongs to the blocks on the diagonal.
+fn set_stiffness<T: Scalar>(
+    contacts: &mut Contacts,
+    blocks: &[Mat3<T>],
+    stiffness: T,
+    masses: &[T],
+    filters: &[Filter<T>],
+) {
+    contacts.set_stiffness(|node| {
+        let node = node as usize;
+        let diagonal = blocks[node].trace().to_f64().abs() / 3.0 * stiffness.to_f64() + masses[node].to_f64();
+        (filters[node] != Filter::Held && diagonal > 0.0).then_some(diagonal)
+    });
 }
 
 /// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.

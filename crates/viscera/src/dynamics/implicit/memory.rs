@@ -33,6 +33,8 @@ pub struct ImplicitMemory<T> {
     pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) matrix: Option<BlockMatrix<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
+    /// Forces with which jaws drag nodes that slip through them [N].
+    pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
     pub(super) history: Vec<f64>,
 }
@@ -59,6 +61,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, rings)),
             matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            dragged: Vec::with_capacity(nodes),
             history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
         }
     }

@@ -2,7 +2,9 @@
 
 use super::ImplicitReport;
 use super::balance::Balance;
+use super::correction::Solve;
 use super::step::Step;
+use super::tools::Guess;
 use crate::math::{Scalar, Vec3};
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.
@@ -17,6 +19,10 @@ const CONTENT: f64 = 0.9;
 const STEEP: f64 = 0.5;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
+/// The most solves of a linearised step between which contacts close or open.
+const ROUNDS: u32 = 8;
+/// Iterations of Newton's method after which contacts stay as they are.
+const DECIDED: u32 = 20;
 /// The most lengths that the line search tries.
 const TRIALS: u32 = 10;
 
@@ -26,7 +32,15 @@ impl<T: Scalar> Step<'_, T> {
         let before = self.evaluate();
         let arrived = self.go_on();
         self.memory.correction.copy_from_slice(&self.memory.coast);
-        let solve = self.correct();
+        self.meet_tools(Guess::Coast);
+        let mut solve = self.correct();
+        for _ in 1..ROUNDS {
+            if solve.negative_curvature || !self.meet_tools(Guess::Correction) {
+                break;
+            }
+            let again = self.correct();
+            solve = Solve { iterations: solve.iterations + again.iterations, ..again };
+        }
         if !solve.negative_curvature {
             let gain = self.work().abs();
             self.move_by(1.0);
@@ -66,7 +80,12 @@ impl<T: Scalar> Step<'_, T> {
             report.residual = if scale > 0.0 { balance.lack / scale } else { 0.0 };
             self.memory.history.push(report.residual);
             let arrived = self.go_on();
-            report.converged = arrived && balance.lack <= (relative * scale).max(floor);
+            let guess = if report.newton_iterations == 0 { Guess::Coast } else { Guess::Increment };
+            let news = report.newton_iterations < DECIDED && self.meet_tools(guess);
+            if news {
+                balance = self.find_lack();
+            }
+            report.converged = arrived && !news && balance.lack <= (relative * scale).max(floor);
             if report.converged || report.newton_iterations == at_most || !balance.lack.is_finite() {
                 return report;
             }

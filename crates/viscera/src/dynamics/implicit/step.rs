@@ -20,13 +20,19 @@ pub fn advance<T: Scalar>(
     let numbers = settings.scheme.numbers(body.state.past.is_known);
     let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages };
     step.begin();
-    let report = match settings.newton {
-        Newton::Linearised => step.solve_linearised(),
-        Newton::Full { relative, at_most } => step.solve_in_full(relative, at_most),
-    };
+    let mut report = step.solve();
+    for _ in 0..SLIPS {
+        if !step.slip() {
+            break;
+        }
+        report = report.then(step.solve());
+    }
     step.finish();
     report
 }
+
+/// How many times nodes that slip through jaws are let go in a step; the first time sees nearly all of them.
+const SLIPS: u32 = 4;
 
 /// One implicit step of one body, whatever the scheme.
 pub(super) struct Step<'a, T: Scalar> {
@@ -41,11 +47,20 @@ pub(super) struct Step<'a, T: Scalar> {
 }
 
 impl<T: Scalar> Step<'_, T> {
+    fn solve(&mut self) -> ImplicitReport {
+        match self.settings.newton {
+            Newton::Linearised => self.solve_linearised(),
+            Newton::Full { relative, at_most } => self.solve_in_full(relative, at_most),
+        }
+    }
+
     /// Where nodes would go without forces, and where driven ones have to go.
     fn begin(&mut self) {
         self.memory.start.copy_from_slice(&self.body.state.positions);
         self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
+        self.memory.dragged.clear();
+        self.body.contacts.clear();
         self.body.is_linearized &= self.body.state.forces_are_current;
         if self.settings.scheme.needs_acceleration() {
             self.balance_at_start();
@@ -101,6 +116,7 @@ impl<T: Scalar> Step<'_, T> {
         for node in 0..self.memory.start.len() {
             self.body.state.velocities[node] = self.end_velocity(node);
         }
+        self.account_for_tools();
         let (state, memory) = (&mut self.body.state, &*self.memory);
         let mut moved = self.numbers.place != 1.0;
         for node in 0..memory.start.len() {
