@@ -148,6 +148,10 @@ getters!(PyInstrumentObservables {
     active: bool = |of| of.active;
     /// Nodes that it holds.
     held_nodes: usize = |of| of.held_nodes;
-    /// Force on the tissue [N], apart from the inertia of the held nodes themselves.
+    /// Force on the tissue [N], the mean over the last step: what carries the held nodes, contact and friction.
     force: [f64; 3] = |of| of.force.to_array();
+    /// Moment of that force about the tip [N m].
+    torque: [f64; 3] = |of| of.torque.to_array();
+    /// Points at which it touches tissue.
+    contacts: usize = |of| of.contacts;
 });

@@ -206,6 +206,14 @@ impl PySimulatedBody {
         })
     }
 
+    /// How far each node is seared: 0 where tissue is fresh, 1 at the rim of a burnt cut; shape (n,).
+    #[getter]
+    fn seared<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        in_world!(&self.world.borrow(py).world, world => {
+            list_array(py, world.body(self.id).seared().iter().map(|&share| share.to_f64()).collect())
+        })
+    }
+
     /// Cells that are not removed.
     #[getter]
     fn cell_count(&self, py: Python<'_>) -> usize {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use viscera::body::SimulatedBody;
 use viscera::executor::Executor;
-use viscera::world::{BodyId, InstrumentId, Snapshot, StepError, StepReport, World, WorldConfig};
+use viscera::world::{Attachment, AttachmentId, BodyId, InstrumentId, Snapshot, StepError, StepReport, World, WorldConfig};
 use viscera_scene::file::SceneFile;
 
 use crate::arrays::{NumpyScalar, vector_array};
@@ -20,6 +20,7 @@ use crate::error::OrRaise;
 use crate::instrument::PyTool;
 use crate::integrator::integrator;
 use crate::model::choose;
+use crate::region::region;
 use crate::report::PyStepReport;
 use crate::simulated::PySimulatedBody;
 
@@ -76,6 +77,22 @@ impl PySnapshot {
             AnySnapshot::Double(snapshot) => snapshot.to_bytes(),
         };
         PyBytes::new(py, &bytes)
+    }
+}
+
+/// A part of a body that is grown to another body.
+#[pyclass(frozen, name = "Attachment", module = "viscera")]
+pub(crate) struct PyAttachment {
+    world: Py<PyWorld>,
+    id: AttachmentId,
+}
+
+#[pymethods]
+impl PyAttachment {
+    /// Force with which the other body pulls at the attached one [N]: the mean over the last step.
+    #[getter]
+    fn force(&self, py: Python<'_>) -> [f64; 3] {
+        in_world!(&self.world.borrow(py).world, world => world.attachment_force(self.id).to_array())
     }
 }
 
@@ -237,6 +254,22 @@ impl PyWorld {
             instruments.set_item(name, PyTool { world: slf.clone().unbind(), id })?;
         }
         Ok(instruments)
+    }
+
+    /// Grows the nodes of a region of `body` to the surface of the body `to`, where both are now; best the finer one to the coarser.
+    /// Explicit worlds only.
+    fn attach(
+        slf: &Bound<'_, Self>,
+        body: &PySimulatedBody,
+        region: &Bound<'_, PyAny>,
+        to: &PySimulatedBody,
+    ) -> PyResult<PyAttachment> {
+        if !body.world.is(slf) || !to.world.is(slf) {
+            return Err(PyValueError::new_err("both bodies must be bodies of this world"));
+        }
+        let attachment = Attachment { body: body.id, region: self::region(region)?, to: to.id };
+        let id = in_world!(&mut slf.borrow_mut().world, world => world.attach(attachment)).or_raise()?;
+        Ok(PyAttachment { world: slf.clone().unbind(), id })
     }
 
     /// Advances by one step; other threads run meanwhile. Raises `StepFailed` where that fails, and the world is as before.

@@ -5,6 +5,7 @@ raises a subclass of :class:`Error` that says what to change.
 """
 
 from ._viscera import (
+    Attachment,
     Body,
     BodyObservables,
     BodyRefused,
@@ -35,6 +36,7 @@ from ._viscera import (
     ModelRefused,
     NeoHookean,
     NodallyIntegrated,
+    Probe,
     ReadFailed,
     Region,
     RegionRefused,
