@@ -1,13 +1,14 @@
-"""What tests share: the reference cases that the engine's own tests have, read from the repository as data."""
+"""What tests share: the reference cases that the engine's own tests have, where `test.sh` says they are."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 import viscera
 
-REFERENCES = Path(__file__).resolve().parents[2] / "viscera" / "tests" / "data" / "references"
+REFERENCES = Path(os.environ["VISCERA_REFERENCES"])
 
 
 @pytest.fixture

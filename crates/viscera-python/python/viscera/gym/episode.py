@@ -54,6 +54,10 @@ class Episode:
     actions = 4
     #: Points of the body that the state shows.
     tracked = 8
+    #: Where the tool is before an episode begins, above all tissue [m].
+    home = (0.0, 0.25, 0.0)
+    #: Where it points, from handle to tip.
+    direction = (0.0, -1.0, 0.0)
 
     def __init__(self, settings: Settings):
         self.settings = settings
@@ -103,10 +107,10 @@ class Episode:
         self.positions = self.body.positions
         self.steps, self.damage, self.trigger = 0, 0.0, 0.0
         self.tip = np.asarray(self.place(rng), dtype=float)
-        self.instrument.lead(self.tip.tolist(), direction=self.direction)
         self.force = np.zeros(3)
-        # The tool is put to its place once; the tissue does not move meanwhile.
-        self.failure = None
+        # The tool comes from above, where it touches nothing, and the tissue rests meanwhile.
+        self.instrument.lead(self.tip.tolist(), direction=self.direction)
+        self.world.step()
 
     def _build(self, young: float, sides: np.ndarray) -> None:
         mesh = self.mesh()
@@ -124,9 +128,6 @@ class Episode:
         self.seen = _spread(mesh.nodes, self.skin, max(self.settings.points, self.tracked))
         self.instrument = self.world.add_instrument(self.tool(), "tool")
 
-    #: Where the tool points, from handle to tip.
-    direction = (0.0, -1.0, 0.0)
-
     def command(self, action: np.ndarray) -> None:
         """Moves the tool's target; what it really does, the next step shows."""
         action = np.clip(np.asarray(action, dtype=float), -1, 1)
@@ -139,7 +140,6 @@ class Episode:
     def outcome(self, failure: str | None):
         """After a step: reward, terminated, truncated, info."""
         self.steps += 1
-        self.failure = failure
         self.positions = self.body.positions
         self.force = np.asarray(self.instrument.force)
         strength = float(np.linalg.norm(self.force))

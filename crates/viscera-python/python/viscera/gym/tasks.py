@@ -56,7 +56,7 @@ class Reach(_OnLiver):
     actions = 3
 
     def tool(self):
-        return viscera.Probe(shaft=(2.5e-3, 0.3))
+        return viscera.Probe(self.home, shaft=(2.5e-3, 0.3))
 
     def place(self, rng):
         self._goal = self.rest[self._top(rng)] + np.array([0.0, 0.008, 0.0])
@@ -82,7 +82,7 @@ class GraspAndLift(_OnLiver):
     """
 
     def tool(self):
-        return viscera.Grasper(radius=0.012)
+        return viscera.Grasper(self.home, radius=0.012)
 
     def place(self, rng):
         self._node = self._top(rng)
@@ -121,7 +121,7 @@ class Retract(Episode):
         return viscera.Region.half_space([-0.046, 0.0, 0.0], [-1.0, 0.0, 0.0])
 
     def tool(self):
-        return viscera.Grasper(radius=0.012)
+        return viscera.Grasper(self.home, radius=0.012)
 
     def place(self, rng):
         centre = np.array([rng.uniform(0.0, 0.02), rng.uniform(-0.02, 0.02)])
@@ -177,7 +177,7 @@ class CutToLine(Episode):
         )
 
     def tool(self):
-        return viscera.Cautery(radius=0.002)
+        return viscera.Cautery(self.home, radius=0.002)
 
     def place(self, rng):
         nodes, cells = self.rest, self.body.mesh.cells
