@@ -84,7 +84,8 @@ class Equilibrium:
     def residuals(self, p: Parameters, gradients: bool = True):
         """Computed less measured, over the standard deviations, and their derivatives by the parameters; shapes (m,), (m, k)."""
         body = _simulate(self.body(p), gravity=self.gravity)
-        if self._start is not None:
+        # From the last equilibrium, unless a plate has to go its way again: the tissue before it would be crushed.
+        if self._start is not None and not {"prescribed", "guided"} & set(body.motions):
             body.positions = self._start
         body.settle(solver=self.solver)
         x = body.positions

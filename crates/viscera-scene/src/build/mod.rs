@@ -1,5 +1,6 @@
 //! From a checked scene to a world.
 
+mod attachment;
 mod body;
 mod csv;
 mod curve;
@@ -15,7 +16,7 @@ use indexmap::IndexMap;
 use viscera::math::Scalar;
 use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
-use viscera::world::{BodyId, InstrumentId, World, WorldConfig, WorldError};
+use viscera::world::{AttachmentId, BodyId, InstrumentId, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
 use crate::file::{InstrumentFile, SceneFile};
@@ -30,6 +31,8 @@ pub struct BuiltScene<T: Scalar> {
     pub world: World<T>,
     /// Bodies by name, in the order of the file.
     pub bodies: IndexMap<String, BodyId>,
+    /// Attachments by the name of the body that is attached, in the order of the file.
+    pub attachments: IndexMap<String, Vec<AttachmentId>>,
     /// Instruments by name, in the order of the file.
     pub instruments: IndexMap<String, InstrumentId>,
     /// What was found and repaired in mesh files, by the name of the body.
@@ -86,6 +89,12 @@ impl Scene {
             })?;
             bodies.insert(name.clone(), id);
         }
+        let mut attachments = IndexMap::new();
+        for (name, described) in &file.body {
+            let site = root.key("body").key(name);
+            attachments.insert(name.clone(), attachment::attach(&mut world, &bodies, bodies[name], described, &site)?);
+        }
+        attachments.retain(|_, own| !own.is_empty());
         let mut instruments = IndexMap::new();
         for (name, described) in &file.instrument {
             let site = root.key("instrument").key(name);
@@ -99,6 +108,6 @@ impl Scene {
             }
             instruments.insert(name.clone(), instrument::add(&mut world, described, &site)?);
         }
-        Ok(BuiltScene { file, world, bodies, instruments, notices })
+        Ok(BuiltScene { file, world, bodies, attachments, instruments, notices })
     }
 }
