@@ -97,7 +97,7 @@ def retract(episode):
     if episode.instrument.held_nodes == 0:
         near = np.linalg.norm(episode.tip - place) < 0.004
         return towards(episode, place, 1.0 if near else -1.0)
-    back = np.array([-0.06, 0.06, 0.0])
+    back = np.array([-0.05, 0.11, 0.0])
     return towards(episode, back, 1.0)
 
 

@@ -180,12 +180,12 @@ class CutToLine(Episode):
         return viscera.Cautery(self.home, radius=0.002)
 
     def place(self, rng):
-        nodes, cells = self.rest, self.body.mesh.cells
-        centres = nodes[cells].mean(axis=1)
+        corners = self.rest[self.body.mesh.cells][:, :, 0]
         self._x = float(rng.uniform(-0.015, 0.015))
-        along = max(2, round((self.settings.cells / 6) ** 0.5))
-        width = 0.1 / along * float(self.sides.max())
-        self._line = np.abs(centres[:, 0] - self._x) < 0.75 * width
+        # The line runs through some cells, and those that the hot tip cannot touch when it keeps to it are to be spared.
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        self._line = (low <= self._x) & (self._x <= high)
+        self._spared = (low > self._x + 0.004) | (high < self._x - 0.004)
         self._cut, self._else = 0.0, 0.0
         return np.array([self._x + rng.uniform(-0.01, 0.01), 0.02, -0.06])
 
@@ -194,7 +194,7 @@ class CutToLine(Episode):
 
     def judge(self):
         removed = self.body.removed
-        cut, elsewhere = float(removed[self._line].mean()), float(removed[~self._line].mean())
+        cut, elsewhere = float(removed[self._line].mean()), float(removed[self._spared].mean())
         gain = cut - self._cut - 2 * (elsewhere - self._else)
         self.damage += elsewhere - self._else
         self._cut, self._else = cut, elsewhere
