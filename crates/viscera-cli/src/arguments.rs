@@ -40,6 +40,9 @@ pub(crate) enum Command {
     /// Run a scene with a clock on every stage: where the time goes, against the time of a frame, and what would lower it.
     #[command(after_help = EXIT_CODES)]
     Profile(ProfileArguments),
+    /// Run a scene with many values of its parameters: one row of a table for each combination.
+    #[command(after_help = EXIT_CODES)]
+    Sweep(SweepArguments),
     /// Measure what this machine holds: the largest organ in real time, the longest run.
     #[command(after_help = EXIT_CODES)]
     Bench {
@@ -157,6 +160,24 @@ impl Default for ServeArguments {
             threads: None,
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SweepArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Values of a key, such as body.liver.law.young="4 kPa,8 kPa"; repeated for more keys, in all combinations.
+    #[arg(long, value_name = "KEY=VALUE,…", required = true)]
+    pub(crate) vary: Vec<String>,
+    /// The table, as CSV; by default out/ and the name of the scene. Rows are written as they come.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Cases that run at a time, a thread each.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,7 @@ mod run;
 mod scenes;
 mod serve;
 mod stopwatch;
+mod sweep;
 mod tables;
 mod terminal;
 mod units;
@@ -39,6 +40,7 @@ fn carry_out(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Profile(arguments)) => profile::profile(&arguments),
+        Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Bench { command }) => bench::carry_out(&command),
         Some(Command::Mesh { command }) => mesh::carry_out(&command),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),

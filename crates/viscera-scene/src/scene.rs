@@ -107,6 +107,14 @@ impl Scene {
         files_in(&tree, &mut |file| files.push(self.files.path(file)));
         Ok(files)
     }
+
+    /// The folder in which files that it names are looked for; empty for a scene whose files are in memory.
+    pub fn folder(&self) -> &Path {
+        match &self.files {
+            Files::Folder(folder) => folder,
+            Files::Memory(_) => Path::new(""),
+        }
+    }
 }
 
 /// Paths stand under the keys `file` and `surface`, wherever these are.

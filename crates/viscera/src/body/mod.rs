@@ -5,6 +5,7 @@ mod error;
 mod guide;
 mod load;
 mod model_plan;
+mod placement;
 mod removals;
 mod simulated;
 mod state;

@@ -62,6 +62,18 @@ impl LawKind {
     /// The law that brings tissue back from every deformation, whatever was done to it.
     pub const TURNS_BACK: Self = Self::StableNeoHookean;
 
+    /// Whether the law takes rotations for what they are: the energy of R F is that of F.
+    pub fn is_objective(self) -> bool {
+        struct IsObjective;
+        impl LawVisitor for IsObjective {
+            type Output = bool;
+            fn visit<L: LawFamily>(self) -> bool {
+                L::OBJECTIVE
+            }
+        }
+        self.visit(IsObjective)
+    }
+
     /// Whether the law cannot tell a cell from its mirror image: one that is turned inside out is as content as at rest, and
     /// stays so.
     pub fn is_blind_to_reflections(self) -> bool {

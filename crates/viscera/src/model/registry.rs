@@ -40,14 +40,7 @@ pub struct Claims {
 impl Claims {
     /// What holds for a model that computes `law` and nothing else.
     pub fn of_law(law: LawKind) -> Self {
-        struct IsObjective;
-        impl LawVisitor for IsObjective {
-            type Output = bool;
-            fn visit<L: LawFamily>(self) -> bool {
-                L::OBJECTIVE
-            }
-        }
-        let objective = law.visit(IsObjective);
+        let objective = law.is_objective();
         Self {
             of_the_law: true,
             objective,

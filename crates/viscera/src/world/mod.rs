@@ -3,6 +3,7 @@
 mod attachment;
 mod config;
 mod error;
+mod forces;
 mod observables;
 mod snapshot;
 mod statics;

@@ -116,7 +116,7 @@ impl<T: Scalar> World<T> {
         }
     }
 
-    fn bring_forces_up_to_date(&mut self) {
+    pub(super) fn bring_forces_up_to_date(&mut self) {
         let (time, gravity) = (self.time(), Vec3::from(self.config.gravity).cast());
         for body in &mut self.bodies {
             body.update_internal_forces(Stages::unobserved());

@@ -1,7 +1,7 @@
 use super::{BodyId, World};
-use crate::dynamics::quasi_static::{QuasiStatic, StaticError, StaticReport};
-use crate::math::Scalar;
-use crate::solver::LinearSolver;
+use crate::dynamics::quasi_static::{QuasiStatic, StaticError, StaticReport, respond};
+use crate::math::{Scalar, Vec3};
+use crate::solver::{LinearSolver, SolverError};
 
 impl<T: Scalar> World<T> {
     /// Brings a body to rest under the world's gravity, its loads and prescribed motions as they are now. Time stands
@@ -41,5 +41,20 @@ impl<T: Scalar> World<T> {
     ) -> Result<StaticReport, StaticError> {
         let (gravity, time) = (self.config.gravity, self.time());
         settings.solve(&mut self.bodies[id.0], gravity, time, solver)
+    }
+    /// How a body answers small `forces` [N] where it is, see [`respond`]: displacements [m] of its nodes for each of them, with the
+    /// masses counting `inertia` times [1/s²; 0 for a body at rest]. Nothing moves. Panics for a number of another world.
+    ///
+    /// # Errors
+    /// As [`respond`].
+    pub fn respond(
+        &mut self,
+        id: BodyId,
+        forces: &[Vec<Vec3<f64>>],
+        inertia: f64,
+        solver: &mut dyn LinearSolver,
+    ) -> Result<Vec<Vec<Vec3<f64>>>, SolverError> {
+        let time = self.time();
+        respond(&mut self.bodies[id.0], time, forces, inertia, solver)
     }
 }

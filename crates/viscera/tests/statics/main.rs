@@ -6,3 +6,4 @@ mod limits;
 mod locking;
 mod reference;
 mod references;
+mod responses;

@@ -275,7 +275,7 @@ fn norm(values: &[Vec3<f64>]) -> f64 {
 }
 
 /// Gives blocks of any precision to a matrix in double precision.
-struct Widen<'a>(&'a mut BlockMatrix<f64>);
+pub(super) struct Widen<'a>(pub(super) &'a mut BlockMatrix<f64>);
 
 impl<T: Scalar> BlockSink<T> for Widen<'_> {
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {

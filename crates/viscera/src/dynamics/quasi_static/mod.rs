@@ -16,8 +16,10 @@
 
 mod equilibrium;
 mod error;
+mod response;
 
 pub use error::{StaticError, StaticFailure};
+pub use response::respond;
 
 use self::equilibrium::Equilibrium;
 use crate::body::SimulatedBody;

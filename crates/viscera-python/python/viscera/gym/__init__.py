@@ -1,0 +1,25 @@
+"""Environments for robot learning, after Gymnasium (extra ``viscera[gym]``).
+
+Importing this registers ``viscera/Reach-v0``, ``viscera/GraspAndLift-v0``, ``viscera/Retract-v0`` and ``viscera/CutToLine-v0``;
+``gymnasium.make`` and ``gymnasium.make_vec`` take the fields of :class:`Settings` as keyword arguments. A vector environment steps its worlds in
+threads of the engine; its rows are, to the bit, those of single environments with the seeds that it hands out (seed, seed + 1, …).
+"""
+
+import gymnasium
+
+from .environment import TissueEnv, TissueVectorEnv
+from .episode import Settings
+from .tasks import TASKS, CutToLine, GraspAndLift, Reach, Retract
+
+__all__ = ["TASKS", "CutToLine", "GraspAndLift", "Reach", "Retract", "Settings", "TissueEnv", "TissueVectorEnv"]
+
+for _name in TASKS:
+    _id = f"viscera/{_name}-v0"
+    if _id not in gymnasium.registry:
+        gymnasium.register(
+            _id,
+            entry_point="viscera.gym:TissueEnv",
+            vector_entry_point="viscera.gym:TissueVectorEnv",
+            kwargs={"task": _name},
+            disable_env_checker=True,
+        )

@@ -1,0 +1,266 @@
+"""Parameters of tissue from measured positions and forces.
+
+Gauss–Newton (Levenberg–Marquardt) with exact gradients: one load costs its equilibrium and one factorisation, a motion one linear
+solve with as many right-hand sides as there are parameters in each of its steps. At an equilibrium f(x, p) = f_ext,
+
+    K dx/dp = −∂f/∂p,
+
+and a step of backward Euler has (1/dt² + γ/dt) M + K in place of K, and what the step before hands on at its right. ∂f/∂p at fixed
+positions is a central difference of the model's forces, which are smooth in the parameters and cost no solve.
+
+    body = lambda p: viscera.Body(mesh, 1000, model=viscera.TotalLagrangian(
+        viscera.NeoHookean.from_young_poisson(**p)), fix="z-min")
+    hanging = viscera.identify.Equilibrium(body, gravity=[0, 0, -9.81], nodes=skin, positions=measured)
+    result = viscera.identify.fit([hanging], start={"young": 5e3, "poisson": 0.3}, bounds={"poisson": (0.0, 0.49)})
+    print(result)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ._viscera import Body, Error, Implicit, World
+
+#: Share of a parameter by which it is varied for ∂f/∂p: rounding (1e-16/h) and truncation (h²) meet near it.
+_VARIATION = 1e-5
+
+Parameters = Mapping[str, float]
+BodyOf = Callable[[Parameters], Body]
+
+
+def _varied_forces(body: BodyOf, p: Parameters, x) -> np.ndarray:
+    """∂f_int/∂p at positions x [N per unit of the parameter]; shape (parameters, n, 3)."""
+    slopes = []
+    for name, value in p.items():
+        step = _VARIATION * max(abs(value), _VARIATION)
+        ends = [_simulate(body({**p, name: value + sign * step})).forces_at(x) for sign in (1.0, -1.0)]
+        slopes.append((ends[0] - ends[1]) / (2 * step))
+    return np.array(slopes)
+
+
+def _simulate(body: Body, **world):
+    """The body alone in a world, in double precision."""
+    return World(precision="double", **world).add(body)
+
+
+@dataclass
+class Equilibrium:
+    """A body at rest under a load, of which positions, or the force on a region, or both were measured.
+
+    ``body``: makes the body from a dict of parameters. ``nodes``, ``positions``: which nodes were seen where [m, shape (k, 3)]; NaN
+    for coordinates that were not. ``points``: instead of nodes, weights of shape (k, n) (a row sums to 1) for places between
+    nodes. ``force_on``: nodes of a region on which ``force`` [N, shape (3,)] was measured: what holds the region, so +weight for what
+    stands on it. ``deviation`` [m] and ``force_deviation`` [N]: standard deviations of one number; where they are not known, leave
+    them, and the scatter of the residuals takes their place.
+    """
+
+    body: BodyOf
+    gravity: Sequence[float] = (0.0, -9.81, 0.0)
+    nodes: Sequence[int] | None = None
+    points: np.ndarray | None = None
+    positions: np.ndarray | None = None
+    force_on: Sequence[int] | None = None
+    force: Sequence[float] | None = None
+    deviation: float = 1.0
+    force_deviation: float = 1.0
+    solver: str = "direct"
+    _start: np.ndarray | None = field(default=None, repr=False)
+
+    def __post_init__(self):
+        if self.positions is None and self.force is None:
+            raise ValueError("nothing was measured: give `positions` of `nodes` or `points`, or a `force` on `force_on`")
+        if self.positions is not None and (self.nodes is None) == (self.points is None):
+            raise ValueError("say where the positions are: give either `nodes` or `points`")
+        if not (self.deviation > 0 and self.force_deviation > 0):
+            raise ValueError("standard deviations must be positive")
+
+    def _seen(self, vectors):
+        """The measured places among vectors at the nodes."""
+        return vectors[np.asarray(self.nodes)] if self.points is None else np.asarray(self.points) @ vectors
+
+    def residuals(self, p: Parameters, gradients: bool = True):
+        """Computed less measured, over the standard deviations, and their derivatives by the parameters; shapes (m,), (m, k)."""
+        body = _simulate(self.body(p), gravity=self.gravity)
+        # From the last equilibrium, unless a plate has to go its way again: the tissue before it would be crushed.
+        if self._start is not None and not {"prescribed", "guided"} & set(body.motions):
+            body.positions = self._start
+        body.settle(solver=self.solver)
+        x = body.positions
+        self._start = x
+        moved = None
+        if gradients:
+            slopes = _varied_forces(self.body, p, x)
+            moved = body.respond(-slopes, solver=self.solver)
+        rows, columns = [], []
+        if self.positions is not None:
+            known = np.isfinite(self.positions)
+            rows.append((self._seen(x) - self.positions)[known] / self.deviation)
+            if gradients:
+                columns.append(np.array([self._seen(u)[known] for u in moved]).T / self.deviation)
+        if self.force is not None:
+            held = np.asarray(self.force_on)
+            reaction = (body.internal_forces - body.external_forces)[held].sum(axis=0)
+            rows.append((reaction - np.asarray(self.force)) / self.force_deviation)
+            if gradients:
+                by_parameter = [(df + body.product_at(x, u))[held].sum(axis=0) for df, u in zip(slopes, moved)]
+                columns.append(np.array(by_parameter).T / self.force_deviation)
+        return np.concatenate(rows), np.concatenate(columns) if gradients else None
+
+
+@dataclass
+class Motion:
+    """A body in motion, of which positions were measured at some of its steps.
+
+    ``body``: makes the body from a dict of parameters; without stiffness damping. It starts at rest, or at ``start`` with
+    ``velocity`` (shape (n, 3)), and moves by backward Euler steps of ``step`` [s], solved in full. ``seen``: for a step's number, from
+    1, the positions of ``nodes`` [m, shape (k, 3)]. ``damping``: the body's rate [1/s], as the body has it.
+    """
+
+    body: BodyOf
+    step: float
+    nodes: Sequence[int]
+    seen: Mapping[int, np.ndarray]
+    gravity: Sequence[float] = (0.0, -9.81, 0.0)
+    damping: float = 0.0
+    deviation: float = 1.0
+    start: np.ndarray | None = None
+    velocity: np.ndarray | None = None
+    solver: str = "direct"
+
+    def __post_init__(self):
+        if not self.seen:
+            raise ValueError("nothing was measured: give positions for at least one step")
+
+    def residuals(self, p: Parameters, gradients: bool = True):
+        """Computed less measured, over the standard deviation, and their derivatives by the parameters; shapes (m,), (m, k)."""
+        scheme = Implicit(newton="full", newton_tolerance=1e-11, linear_tolerance=1e-9)
+        body = _simulate(self.body(p), gravity=self.gravity, step=self.step, integrator=scheme)
+        if self.start is not None:
+            body.positions = self.start
+        if self.velocity is not None:
+            body.velocities = self.velocity
+        nodes, masses = np.asarray(self.nodes), body.masses[:, None]
+        still = np.zeros((len(p), *body.mesh.nodes.shape))
+        moved, speed = still, still
+        inertia = 1 / self.step**2 + self.damping / self.step
+        rows, columns = [], []
+        for number in range(1, max(self.seen) + 1):
+            body.world.step()
+            x = body.positions
+            if gradients:
+                handed_on = masses * (inertia * moved + speed / self.step)
+                after = body.respond(handed_on - _varied_forces(self.body, p, x), inertia=inertia, solver=self.solver)
+                moved, speed = after, (after - moved) / self.step
+            if number in self.seen:
+                measured = np.asarray(self.seen[number], dtype=float)
+                known = np.isfinite(measured)
+                rows.append((x[nodes] - measured)[known] / self.deviation)
+                if gradients:
+                    columns.append(np.array([u[nodes][known] for u in moved]).T / self.deviation)
+        return np.concatenate(rows), np.concatenate(columns) if gradients else None
+
+
+@dataclass
+class Fit:
+    """What was found."""
+
+    #: Values by name.
+    parameters: dict[str, float]
+    #: Standard errors by name: the roots of the covariance's diagonal.
+    standard_errors: dict[str, float]
+    #: Covariance s² (JᵀJ)⁻¹ in the order of `parameters`, with s² the scatter of the residuals, or 1 where deviations were given.
+    covariance: np.ndarray
+    #: Residuals over their deviations at the end.
+    residuals: np.ndarray
+    #: ½ Σ r² after each iteration, and at the start.
+    costs: list[float]
+    #: Whether the last step was below the tolerance.
+    converged: bool
+    #: Parameters that ended at one of their bounds; their errors say nothing.
+    at_bound: list[str]
+
+    def __str__(self):
+        lines = [f"{name} = {value:.6g} ± {self.standard_errors[name]:.2g}" for name, value in self.parameters.items()]
+        return "\n".join([*lines, f"{len(self.costs) - 1} iterations, {'converged' if self.converged else 'not converged'}"])
+
+
+def fit(
+    experiments: Sequence[Equilibrium | Motion],
+    start: Parameters,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    *,
+    known_deviations: bool = False,
+    tolerance: float = 1e-8,
+    iterations: int = 50,
+) -> Fit:
+    """The parameters that fit all experiments best in the least squares of their residuals.
+
+    ``start``: the parameters to begin with. ``bounds``: (least, most) by name. ``known_deviations``: whether the experiments' deviations are
+    those of the measurement, so that uncertainties follow from them and not from the scatter. ``tolerance``: relative change of the
+    parameters at which to stop. Values at which a body has no equilibrium are stepped back from.
+    """
+    names = list(start)
+    bounds = dict(bounds or {})
+    if unknown := set(bounds) - set(names):
+        raise ValueError(f"bounds are given for {sorted(unknown)}, which are no parameters; there are {names}")
+    low = np.array([bounds.get(name, (-np.inf, np.inf))[0] for name in names], dtype=float)
+    high = np.array([bounds.get(name, (-np.inf, np.inf))[1] for name in names], dtype=float)
+    theta = np.array([start[name] for name in names], dtype=float)
+    if np.any(theta < low) or np.any(theta > high):
+        raise ValueError("the start lies outside of the bounds")
+
+    def evaluate(values, gradients):
+        parts = [experiment.residuals(dict(zip(names, values.tolist())), gradients) for experiment in experiments]
+        residuals = np.concatenate([part[0] for part in parts])
+        return residuals, np.concatenate([part[1] for part in parts]) if gradients else None
+
+    residuals, jacobian = evaluate(theta, True)
+    costs, damping, converged = [0.5 * float(residuals @ residuals)], 1e-4, False
+    while len(costs) <= iterations and not converged:
+        gradient = jacobian.T @ residuals
+        # What lies at a bound and is drawn beyond it takes no part in the step.
+        free = ~(((theta <= low) & (gradient > 0)) | ((theta >= high) & (gradient < 0)))
+        hessian, scale = jacobian.T @ jacobian, np.sum(jacobian**2, axis=0)
+        if not np.any(free & (scale > 0)):
+            converged = True
+            break
+        while True:
+            active = np.flatnonzero(free & (scale > 0))
+            step = np.zeros_like(theta)
+            matrix = hessian[np.ix_(active, active)] + damping * np.diag(scale[active])
+            step[active] = -np.linalg.solve(matrix, gradient[active])
+            trial = np.clip(theta + step, low, high)
+            change = np.max(np.abs(trial - theta) / np.maximum(np.abs(theta), np.finfo(float).tiny))
+            try:
+                tried, _ = evaluate(trial, False)
+                cost = 0.5 * float(tried @ tried)
+            except Error:
+                cost = np.inf
+            if cost <= costs[-1]:
+                damping = max(damping / 9, 1e-12)
+                theta, converged = trial, bool(change < tolerance)
+                residuals, jacobian = evaluate(theta, True)
+                costs.append(cost)
+                break
+            if change < tolerance or damping > 1e12:
+                converged = bool(change < tolerance)
+                iterations = 0
+                break
+            damping *= 11
+    hessian = jacobian.T @ jacobian
+    freedom = max(len(residuals) - len(theta), 1)
+    variance = 1.0 if known_deviations else float(residuals @ residuals) / freedom
+    covariance = variance * np.linalg.pinv(hessian)
+    errors = np.sqrt(np.clip(np.diag(covariance), 0, None))
+    return Fit(
+        parameters=dict(zip(names, theta.tolist())),
+        standard_errors=dict(zip(names, errors.tolist())),
+        covariance=covariance,
+        residuals=residuals,
+        costs=costs,
+        converged=converged,
+        at_bound=[name for name, value, least, most in zip(names, theta, low, high) if value <= least or value >= most],
+    )

@@ -1,0 +1,107 @@
+//! How bodies move in a step.
+
+use pyo3::prelude::*;
+use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
+use viscera::solver::Stop;
+use viscera::world::{Integrator, Substep};
+
+use crate::model::choose;
+
+/// Central differences in stable sub-steps: cheap where the tissue is soft or its cells are large.
+#[pyclass(frozen, name = "Explicit", module = "viscera")]
+pub(crate) struct PyExplicit(Substep);
+
+#[pymethods]
+impl PyExplicit {
+    /// As few sub-steps as are stable, or sub-steps no longer than `substep` [s].
+    #[new]
+    #[pyo3(signature = (substep=None))]
+    fn new(substep: Option<f64>) -> Self {
+        Self(substep.map_or(Substep::Automatic, Substep::Fixed))
+    }
+
+    fn __repr__(&self) -> String {
+        match self.0 {
+            Substep::Automatic => "Explicit()".into(),
+            Substep::Fixed(time) => format!("Explicit(substep={time:?})"),
+        }
+    }
+}
+
+/// One step that the forces at its end decide: stiff tissue and small cells bear long steps.
+#[pyclass(frozen, name = "Implicit", module = "viscera")]
+pub(crate) struct PyImplicit(Implicit);
+
+fn scheme(name: &str, beta: f64, gamma: f64) -> PyResult<Scheme> {
+    let known = [
+        ("backward-euler", Scheme::BackwardEuler),
+        ("newmark", Scheme::Newmark { beta, gamma }),
+        ("bdf2", Scheme::Bdf2),
+        ("energy-momentum", Scheme::EnergyMomentum),
+    ];
+    choose("scheme", name, &known)
+}
+
+#[pymethods]
+impl PyImplicit {
+    /// `scheme`: "backward-euler", "newmark" (with `beta`, `gamma`), "bdf2" or "energy-momentum". `newton`: "linearised" (one linear
+    /// solve for each step) or "full", to `newton_tolerance` in at most `newton_iterations`; by default linearised for
+    /// backward Euler and full for the others. `linear_tolerance`, `linear_iterations`: when the conjugate gradient ends, by
+    /// default at 1e-4 in 100 iterations where the step is linearised and at 1e-6 in 2000 where it is not; iterations alone are
+    /// a fixed number. `matrix`: "free" or "assembled". `preconditioner`: "block-jacobi" or "multigrid".
+    #[new]
+    #[pyo3(signature = (scheme="backward-euler", *, newton=None, newton_tolerance=1e-8, newton_iterations=30,
+        linear_tolerance=None, linear_iterations=None, matrix="free", preconditioner="block-jacobi", beta=0.25, gamma=0.5))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        scheme: &str,
+        newton: Option<&str>,
+        newton_tolerance: f64,
+        newton_iterations: u32,
+        linear_tolerance: Option<f64>,
+        linear_iterations: Option<u32>,
+        matrix: &str,
+        preconditioner: &str,
+        beta: f64,
+        gamma: f64,
+    ) -> PyResult<Self> {
+        let scheme = self::scheme(scheme, beta, gamma)?;
+        let by_default = if scheme == Scheme::BackwardEuler { "linearised" } else { "full" };
+        let full = Newton::Full { relative: newton_tolerance, at_most: newton_iterations };
+        let known = [("linearised", Newton::Linearised), ("full", full)];
+        let newton = choose("newton", newton.unwrap_or(by_default), &known)?;
+        let settings = match newton {
+            Newton::Linearised => Implicit { scheme, ..Implicit::default() },
+            Newton::Full { .. } => Implicit { newton, ..Implicit::accurate(scheme) },
+        };
+        let linear = match (linear_tolerance, linear_iterations) {
+            (None, None) => settings.linear,
+            (None, Some(iterations)) => Stop::Iterations(iterations),
+            (Some(relative), iterations) => Stop::Tolerance { relative, at_most: iterations.unwrap_or(2000) },
+        };
+        let matrix = choose("matrix", matrix, &[("free", MatrixForm::Free), ("assembled", MatrixForm::Assembled)])?;
+        let known = [("block-jacobi", Preconditioning::BlockJacobi), ("multigrid", Preconditioning::Multigrid)];
+        let preconditioner = choose("preconditioner", preconditioner, &known)?;
+        Ok(Self(Implicit { linear, matrix, preconditioner, ..settings }))
+    }
+
+    /// The scheme with Newton's method carried to 1e-8, and linear solves to 1e-6: for accuracy.
+    #[staticmethod]
+    #[pyo3(signature = (scheme="backward-euler"))]
+    fn accurate(scheme: &str) -> PyResult<Self> {
+        self::scheme(scheme, 0.25, 0.5).map(|scheme| Self(Implicit::accurate(scheme)))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<{:?}>", self.0)
+    }
+}
+
+/// The integrator that is meant; explicit where none is given.
+pub(crate) fn integrator(given: Option<&Bound<'_, PyAny>>) -> PyResult<Integrator> {
+    let Some(given) = given else { return Ok(Integrator::default()) };
+    match given.cast::<PyExplicit>() {
+        Ok(explicit) => Ok(Integrator::Explicit(explicit.get().0)),
+        Err(_) => Ok(Integrator::Implicit(given.cast::<PyImplicit>()?.get().0)),
+    }
+}

@@ -1,0 +1,56 @@
+"""Meshes and fields for other packages."""
+
+import numpy as np
+import pytest
+
+import viscera
+
+
+def test_a_mesh_goes_through_meshio_and_back(tmp_path, beam):
+    meshio = pytest.importorskip("meshio")
+    mesh = viscera.TetMesh.box_grid([2, 1, 1], [0.2, 0.1, 0.1])
+    back = viscera.from_meshio(viscera.to_meshio(mesh))
+    assert np.array_equal(back.nodes, mesh.nodes) and np.array_equal(back.cells, mesh.cells)
+    assert np.array_equal(back.nodes_in("x-max"), mesh.nodes_in("x-max"))
+    _, body = beam()
+    body.settle()
+    file = tmp_path / "beam.vtu"
+    stress = body.von_mises_stress()
+    viscera.to_meshio(body, cell_data={"von Mises [Pa]": stress}).write(file)
+    read = meshio.read(file)
+    assert np.array_equal(read.points, body.positions)
+    assert np.array_equal(read.cell_data["von Mises [Pa]"][0], stress)
+    assert isinstance(viscera.from_meshio(meshio.Mesh(mesh.nodes, [("triangle", mesh.surface().triangles)])), viscera.SurfaceMesh)
+
+
+def test_a_body_goes_to_pyvista_without_what_is_cut_away(beam):
+    pytest.importorskip("pyvista")
+    _, body = beam()
+    body.remove_cells([0, 1])
+    grid = viscera.to_pyvista(body, cell_data={"J": body.volume_ratio()})
+    assert grid.n_cells == body.cell_count and not np.isnan(grid.cell_data["J"]).any()
+    again = viscera.from_pyvista(grid)
+    assert np.array_equal(again.cells, body.mesh.cells[~body.removed])
+
+
+def test_a_body_is_drawn_in_one_call(tmp_path, beam):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    _, body = beam()
+    body.settle()
+    for field in (None, "displacement", "von-mises", "volume", np.arange(len(body.mesh))):
+        axes = viscera.plot(body, field, path=tmp_path / "beam.png")
+        # One triangle of the picture for each of the surface's.
+        assert len(axes.collections[0].get_facecolor()) == len(body.surface()[0])
+        matplotlib.pyplot.close(axes.figure)
+    assert (tmp_path / "beam.png").read_bytes()[:4] == b"\x89PNG"
+    with pytest.raises(ValueError, match="there are"):
+        viscera.plot(body, "colour")
+
+
+def test_presets_say_where_their_moduli_come_from():
+    for name, preset in viscera.TISSUES.items():
+        law = preset.law(viscera.StableNeoHookean)
+        lame = viscera.Lame(law.parameters["lambda"], law.parameters["mu"])
+        assert lame.young == pytest.approx(preset.young, rel=1e-12), name
+        assert any(letter.isdigit() for letter in preset.source)

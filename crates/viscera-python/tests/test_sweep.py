@@ -1,0 +1,96 @@
+"""Sweeps: the same table from threads, from a cluster, from a cluster that loses a worker, and from the command line."""
+
+import csv
+import os
+import subprocess
+import time
+
+import pytest
+
+import viscera
+from test_engine import SCENE
+
+VALUES = {"body.bar.law.young": ["3 kPa", "6 kPa", "12 kPa"], "gravity": [[0, -1, 0], [0, -2, 0]]}
+
+
+def sag(world):
+    return {"sag": world.body("bar").max_displacement}
+
+
+def test_a_sweep_has_a_row_for_each_case_in_their_order():
+    table = viscera.sweep(viscera.Scene.parse(SCENE), VALUES, threads=2)
+    assert table["body.bar.law.young"] == ["3 kPa"] * 2 + ["6 kPa"] * 2 + ["12 kPa"] * 2
+    assert table["error"] == [None] * 6
+    softest, stiffest = table["bar: max displacement [m]"][0], table["bar: max displacement [m]"][4]
+    assert softest > stiffest > 0
+    alone = viscera.Scene.parse(SCENE)
+    alone.set("body.bar.law.young", "6 kPa")
+    alone.set("gravity", [0, -2, 0])
+    world, steps, _ = alone.build()
+    world.steps(steps)
+    assert table["bar: max displacement [m]"][3] == world.body("bar").max_displacement
+
+
+def test_a_case_that_is_refused_says_why_in_its_row_and_the_others_run():
+    table = viscera.sweep(viscera.Scene.parse(SCENE), [{"body.bar.law.poisson": 0.3}, {"body.bar.law.poisson": 0.6}], measure=sag)
+    assert table["error"][0] is None and "poisson" in table["error"][1]
+    assert table["sag"][0] > 0 and table["sag"][1] is None
+
+
+def test_a_table_becomes_pandas_arrow_parquet_and_csv(tmp_path):
+    table = viscera.sweep(viscera.Scene.parse(SCENE), {"body.bar.law.poisson": [0.3, 0.4]}, measure=sag)
+    frame = table.to_pandas()
+    assert list(frame.columns) == ["body.bar.law.poisson", "time", "error", "sag"] and frame["sag"].tolist() == table["sag"]
+    table.to_parquet(tmp_path / "t.parquet")
+    import pandas
+
+    assert pandas.read_parquet(tmp_path / "t.parquet")["sag"].tolist() == table["sag"]
+    table.to_csv(tmp_path / "t.csv")
+    assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
+
+
+def count(path):
+    """Measures slowly, and takes down that it did."""
+
+    def measure(world):
+        time.sleep(0.3)
+        with open(path, "a") as file:
+            file.write(f"{os.getpid()}\n")
+        return sag(world)
+
+    return measure
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_table_of_the_threads(tmp_path):
+    """One of two worker processes is killed with SIGKILL in the middle: its cases run again, and no row is lost or doubled."""
+    distributed = pytest.importorskip("distributed")
+    scene, values = viscera.Scene.parse(SCENE), {"body.bar.law.young": [1000.0 * (3 + k) for k in range(10)]}
+    wanted = viscera.sweep(scene, values, measure=sag)
+    runs = tmp_path / "runs"
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            import threading
+
+            def kill_one():
+                while not (runs.exists() and len(runs.read_text().splitlines()) >= 2):
+                    time.sleep(0.02)
+                os.kill(int(runs.read_text().splitlines()[0]), 9)
+
+            killer = threading.Thread(target=kill_one)
+            killer.start()
+            table = viscera.sweep(scene, values, client=client, measure=count(str(runs)))
+            killer.join()
+    assert table.rows == wanted.rows
+
+
+def test_the_command_line_gives_the_same_rows(tmp_path):
+    (tmp_path / "bar.toml").write_text(SCENE)
+    command = [os.environ["VISCERA_PROGRAM"], "sweep", "bar.toml", "--vary", "body.bar.law.young=3 kPa,6 kPa,12 kPa"]
+    command += ["--vary", "gravity=[0, -1, 0],[0, -2, 0]", "--out", "table.csv", "--threads", "2", "--quiet"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    with open(tmp_path / "table.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    table = viscera.sweep(tmp_path / "bar.toml", VALUES)
+    assert [row["body.bar.law.young"] for row in rows] == table["body.bar.law.young"]
+    for column in table.columns[4:]:
+        assert [float(row[column]) for row in rows] == table[column], column

@@ -1,0 +1,50 @@
+//! How a body answers small forces where it is: (K(x) + α M) u = f in the free directions.
+//!
+//! With α = 0 and f = −∂f_int/∂p it is the derivative of an equilibrium by a parameter p of the tissue, and its answer to the
+//! derivative of a misfit is the adjoint state: either way, gradients for one linear solve each. With α = 1/dt² + γ/dt it is the same
+//! for a step of backward Euler.
+
+use super::equilibrium::Widen;
+use crate::body::SimulatedBody;
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::model::BlockSink;
+use crate::solver::{BlockMatrix, LinearSolver, SolverError, System};
+use crate::stage::Stages;
+
+/// Displacements [m] of the nodes for each of `forces` [N, one vector for each node], with the stiffness of the tissue and of
+/// pressures at `time` [s], and masses that count `inertia` times [1/s², ≥ 0]. Forces on what is held have no effect.
+///
+/// # Errors
+/// [`SolverError::NotPositiveDefinite`] where the body is unstable, or nothing holds it; the others as the solver has them.
+pub fn respond<T: Scalar>(
+    body: &mut SimulatedBody<T>,
+    time: f64,
+    forces: &[Vec<Vec3<f64>>],
+    inertia: f64,
+    solver: &mut dyn LinearSolver,
+) -> Result<Vec<Vec<Vec3<f64>>>, SolverError> {
+    body.update_internal_forces(Stages::unobserved());
+    let state = &body.state;
+    let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
+    let mut system = System { matrix: BlockMatrix::new(&body.mesh, state.rings()), filters };
+    body.is_linearized = false;
+    let (state, mut sink) = (&body.state, Widen(&mut system.matrix));
+    for model in &state.models {
+        model.linearize(&state.positions, &mut body.scratch);
+        model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
+    }
+    body.loads.add_blocks(time, &state.positions, &state.removed, 1.0, &mut sink);
+    if inertia > 0.0 {
+        for (node, mass) in state.masses.iter().enumerate() {
+            system.matrix.add(node as u32, node as u32, Mat3::diagonal(inertia * mass.to_f64()));
+        }
+    }
+    solver.analyse(&system);
+    solver.factor(&system)?;
+    let answer = |force: &Vec<Vec3<f64>>| {
+        let mut displacement = force.clone();
+        system.filter(&mut displacement);
+        solver.solve(&system, &mut displacement).map(|()| displacement)
+    };
+    forces.iter().map(answer).collect()
+}
