@@ -6,5 +6,6 @@ export default defineConfig({
   build: { target: 'es2022', chunkSizeWarningLimit: 900 },
   worker: { format: 'es' },
   server: { port: 5173, proxy: { '/ws': { target: 'ws://127.0.0.1:7878', ws: true } } },
+  preview: { proxy: {} },
   test: { include: ['tests/unit/**/*.test.ts'], environment: 'node' },
 });

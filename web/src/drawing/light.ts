@@ -3,7 +3,7 @@ import * as THREE from 'three';
 /** The lamps of the room: one key lamp that throws the shadow, a cool one from behind for the rim, and soft panels all around. */
 export class Lighting {
   readonly group = new THREE.Group();
-  private readonly key = new THREE.DirectionalLight(0xfff1e2, 2.5);
+  private readonly key = new THREE.DirectionalLight(0xfff1e2, 2.2);
   private readonly rim = new THREE.DirectionalLight(0xcfe6ff, 1.5);
   private readonly floorMaterial = new THREE.ShadowMaterial({ opacity: 0.26 });
   private readonly floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), this.floorMaterial);
@@ -61,7 +61,7 @@ export function roomReflections(renderer: THREE.WebGLRenderer): THREE.Texture {
   panel(0xffffff, 7, [-9.7, 2.5, 1], [0.1, 3, 6]);
   panel(0xdcecff, 6, [2, 2, -9.7], [8, 2.2, 0.1]);
   const generator = new THREE.PMREMGenerator(renderer);
-  const reflections = generator.fromScene(room, 0.03).texture;
+  const reflections = generator.fromScene(room, 0.03, 0.1, 100, { size: 64 }).texture;
   generator.dispose();
   box.dispose();
   for (const child of room.children) ((child as THREE.Mesh).material as THREE.Material).dispose();

@@ -85,7 +85,7 @@ float inner = smoothstep(0.3, 0.7, vMark.y);
 #endif
 vec3 skin = skinColour * (0.82 + 0.30 * coarse.x + 0.12 * fine.x);
 skin = mix(skin, skin * vec3(0.78, 0.60, 0.72), smoothstep(0.55, 0.9, coarse.x) * 0.6);
-vec3 raw = mix(vec3(0.47, 0.085, 0.065), vec3(0.62, 0.17, 0.12), fine.x);
+vec3 raw = mix(vec3(0.4, 0.07, 0.055), vec3(0.52, 0.14, 0.1), fine.x);
 vec3 flesh = mix(skin, raw, inner);
 flesh = mix(flesh, vec3(0.34, 0.15, 0.055), 0.85 * scorched);
 flesh = mix(flesh, vec3(0.022, 0.014, 0.011) + 0.035 * fine.x, seared);
@@ -113,7 +113,7 @@ const FRAGMENT_COAT = /* glsl */ `
 #endif
 `;
 
-export const LIVER_SKIN = new THREE.Color(0.3, 0.062, 0.05);
+export const LIVER_SKIN = new THREE.Color(0.2, 0.034, 0.029);
 
 /** `size`: largest extent of the body [m], which sets how fine its grain is. */
 export function tissueLook(size: number, coat: boolean, skin: THREE.Color = LIVER_SKIN): TissueLook {

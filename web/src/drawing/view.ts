@@ -10,6 +10,10 @@ export type Hit =
   | { kind: 'tissue'; body: number; point: THREE.Vector3; normal: THREE.Vector3 }
   | { kind: 'instrument'; instrument: number; point: THREE.Vector3 };
 
+/** What tools at the left and charts below cover of the canvas [CSS pixels]. */
+const COVERED_LEFT = 60;
+const COVERED_BELOW = 100;
+
 /** The canvas with camera and lamps. Draws when something changed, and no oftener than the screen shows. */
 export class View {
   readonly canvas: HTMLCanvasElement;
@@ -214,7 +218,8 @@ export class View {
     if (wanted.x !== clientWidth || wanted.y !== clientHeight) {
       this.renderer.setSize(clientWidth, clientHeight, false);
       this.camera.aspect = clientWidth / clientHeight;
-      this.camera.updateProjectionMatrix();
+      // The middle of the picture is the middle of what tools and charts leave free of it.
+      this.camera.setViewOffset(clientWidth, clientHeight, -COVERED_LEFT / 2, COVERED_BELOW / 2, clientWidth, clientHeight);
     }
     this.renderer.render(this.scene, this.camera);
   }

@@ -1,0 +1,32 @@
+import { defineConfig } from '@playwright/test';
+import { existsSync } from 'node:fs';
+
+/** Chromium of the system where there is one (Debian's), else the one that Playwright brings. */
+const system = process.env['CHROMIUM'] ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+
+export const STATIC_PORT = 4179;
+
+export default defineConfig({
+  testDir: 'tests/page',
+  outputDir: 'tests/artefacts/failures',
+  timeout: 60_000,
+  expect: { timeout: 15_000 },
+  // One picture at a time: two processes that draw in software on two cores only make each other slow.
+  workers: 1,
+  reporter: [['list']],
+  use: {
+    baseURL: `http://127.0.0.1:${STATIC_PORT}`,
+    viewport: { width: 800, height: 500 },
+    screenshot: 'only-on-failure',
+    launchOptions: {
+      ...(system ? { executablePath: system } : {}),
+      args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+    },
+  },
+  webServer: {
+    command: `npx vite preview --host 127.0.0.1 --port ${STATIC_PORT} --strictPort`,
+    port: STATIC_PORT,
+    reuseExistingServer: true,
+    stdout: 'ignore',
+  },
+});
