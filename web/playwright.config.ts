@@ -4,7 +4,9 @@ import { existsSync } from 'node:fs';
 /** Chromium of the system where there is one (Debian's), else the one that Playwright brings. */
 const system = process.env['CHROMIUM'] ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
 
+/** Where the page is served as static files, and where the program listens that the tests start. */
 export const STATIC_PORT = 4179;
+export const PROGRAM_PORT = 4187;
 
 export default defineConfig({
   testDir: 'tests/page',
@@ -25,6 +27,7 @@ export default defineConfig({
   },
   webServer: {
     command: `npx vite preview --host 127.0.0.1 --port ${STATIC_PORT} --strictPort`,
+    env: { VISCERA_PORT: String(PROGRAM_PORT) },
     port: STATIC_PORT,
     reuseExistingServer: true,
     stdout: 'ignore',

@@ -39,7 +39,7 @@ async function main(): Promise<void> {
     view.stage.setChosen(tools.chosen?.instrument);
     view.invalidate();
     strip.show();
-    hint.show(tools.chosen && mannerOf(tools.chosen));
+    if (session.scene) hint.show(tools.chosen ? mannerOf(tools.chosen) : 'none');
   });
   const pointer = new PointerHandling(view, tools, () => hint.dismiss());
   const strip = new ToolStrip(session, tools, (part) => pointer.deepen(part));

@@ -27,7 +27,7 @@ export class Charts {
       new Chart('Rate', 'steps/s', [{ name: 'steps', series: this.rate }], 10),
       new Chart('Volume', '%', [{ name: 'volume', series: this.volume }], 0.2),
       new Chart('Energy', 'J', [{ name: 'elastic', series: this.elastic }, { name: 'kinetic', series: this.kinetic }], 1e-7),
-      new Chart('Tool force', 'N', [{ name: 'force', series: this.force }], 0.01),
+      new Chart('Tool force', 'N', [{ name: 'force', series: this.force }], 0.1),
     ];
     this.node.append(...this.charts.map(({ node }) => node));
     session.on('frame', (frame) => this.take(frame));

@@ -19,11 +19,11 @@ export class ConnectionState {
         say(text, connection.again ? `Lost the way to ${peer}.` : `${capital(peer)} is not to be had.`);
         say(detail, connection.again ? 'Trying again by itself; what you see stands still meanwhile.' : connection.reason);
       }
-      const engine = welcome?.engine === 'wasm' ? 'in this page' : `native, ${welcome?.threads ?? 1} threads`;
+      const engine = welcome?.engine === 'wasm' ? 'in this page' : 'native';
       const watching = role.role === 'watcher' ? ' · watching' : role.clients > 1 ? ` · ${role.clients - 1} watching` : '';
       say(this.chip, connection.state === 'connected' ? engine + watching : connection.state === 'lost' ? 'not connected' : 'connecting');
       this.chip.classList.toggle('bad', connection.state === 'lost');
-      this.chip.title = welcome?.program ?? '';
+      this.chip.title = welcome ? `${welcome.program}, threads: ${welcome.threads}` : '';
     };
     session.on('connection', show);
     session.on('role', show);

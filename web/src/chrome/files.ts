@@ -9,7 +9,7 @@ export type FileKind = 'mesh' | 'scene' | 'recording';
 export function kindOf(name: string, meshFormats: readonly string[]): FileKind | undefined {
   const extension = name.slice(name.lastIndexOf('.') + 1).toLowerCase();
   if (extension === 'toml') return 'scene';
-  if (extension === 'viscera' || extension === 'recording') return 'recording';
+  if (extension === 'viscera-recording') return 'recording';
   return meshFormats.some((format) => format.replace(/^\./, '').toLowerCase() === extension) ? 'mesh' : undefined;
 }
 

@@ -4,15 +4,17 @@ import { edgesOf } from './edges';
 
 /** The linear model beside the non-linear one: a fine wireframe that neither hides anything nor throws a shadow. */
 export class Ghost {
-  readonly lines = new THREE.LineSegments(
-    new THREE.BufferGeometry(),
-    new THREE.LineBasicMaterial({ color: 0x2b7f94, transparent: true, opacity: 0.55, depthWrite: false }),
-  );
+  readonly lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial(0.6, true));
+  /** The same lines where tissue hides them, faint: a ghost inside the organ is to be seen as well. */
+  private readonly hidden = new THREE.LineSegments(this.lines.geometry, lineMaterial(0.13, false));
   private epoch = -1;
 
   constructor() {
-    this.lines.frustumCulled = false;
-    this.lines.renderOrder = 2;
+    this.lines.add(this.hidden);
+    for (const lines of [this.lines, this.hidden]) {
+      lines.frustumCulled = false;
+      lines.renderOrder = 2;
+    }
   }
 
   setSurface(surface: Surface): void {
@@ -20,7 +22,7 @@ export class Ghost {
     geometry.setAttribute('position', new THREE.BufferAttribute(surface.rest.slice(), 3).setUsage(THREE.DynamicDrawUsage));
     geometry.setIndex(new THREE.BufferAttribute(edgesOf(surface.triangles, surface.vertices), 1));
     this.lines.geometry.dispose();
-    this.lines.geometry = geometry;
+    this.lines.geometry = this.hidden.geometry = geometry;
     this.epoch = surface.epoch;
   }
 
@@ -33,11 +35,16 @@ export class Ghost {
   }
 
   setTheme(dark: boolean): void {
-    this.lines.material.color.set(dark ? 0x7fe0ee : 0x14596b);
+    for (const { material } of [this.lines, this.hidden]) material.color.set(dark ? 0x7fe0ee : 0x14596b);
   }
 
   dispose(): void {
     this.lines.geometry.dispose();
     this.lines.material.dispose();
+    this.hidden.material.dispose();
   }
+}
+
+function lineMaterial(opacity: number, depthTest: boolean): THREE.LineBasicMaterial {
+  return new THREE.LineBasicMaterial({ transparent: true, opacity, depthTest, depthWrite: false });
 }

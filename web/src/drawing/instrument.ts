@@ -1,7 +1,7 @@
 import * as THREE from 'three';
 import type { FrameInstrument, SceneInstrument } from '../engine/messages';
 
-const STEEL = new THREE.MeshStandardMaterial({ color: 0xc9cfd2, metalness: 1, roughness: 0.24 });
+const STEEL = new THREE.MeshStandardMaterial({ color: 0xc9cfd2, metalness: 0.85, roughness: 0.26 });
 const SLEEVE = new THREE.MeshStandardMaterial({ color: 0x1d2326, metalness: 0.1, roughness: 0.42 });
 const RING = new THREE.MeshStandardMaterial({ color: 0x2f8f88, metalness: 0.2, roughness: 0.4 });
 const CHOSEN_RING = new THREE.MeshStandardMaterial({ color: 0xf0b266, emissive: 0x6b3d05, metalness: 0.2, roughness: 0.4 });

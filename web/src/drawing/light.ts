@@ -5,6 +5,8 @@ export class Lighting {
   readonly group = new THREE.Group();
   private readonly key = new THREE.DirectionalLight(0xfff1e2, 2.2);
   private readonly rim = new THREE.DirectionalLight(0xcfe6ff, 1.5);
+  /** In place of the room's reflections, where drawing them takes too long. */
+  private readonly plain = new THREE.HemisphereLight(0xf2f6f6, 0x8f7d76, 1.5);
   private readonly floorMaterial = new THREE.ShadowMaterial({ opacity: 0.26 });
   private readonly floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), this.floorMaterial);
 
@@ -14,7 +16,7 @@ export class Lighting {
     this.key.shadow.radius = 5;
     this.floor.rotation.x = -Math.PI / 2;
     this.floor.receiveShadow = true;
-    this.group.add(this.key, this.key.target, this.rim, this.rim.target, this.floor);
+    this.group.add(this.key, this.key.target, this.rim, this.rim.target, this.plain, this.floor);
   }
 
   /** Places lamps and floor around what is shown. `down`: lowest point [m]. */
@@ -39,6 +41,10 @@ export class Lighting {
     this.floor.visible = shown;
   }
 
+  setPlain(plain: boolean): void {
+    this.plain.visible = plain;
+  }
+
   setTheme(dark: boolean): void {
     this.floorMaterial.opacity = dark ? 0.5 : 0.24;
   }
@@ -56,7 +62,7 @@ export function roomReflections(renderer: THREE.WebGLRenderer): THREE.Texture {
     room.add(mesh);
   };
   panel(0xaab8b8, 0.42, [0, 0, 0], [20, 14, 20]);
-  panel(0x56605f, 0.35, [0, -6.9, 0], [19.9, 0.1, 19.9]);
+  panel(0xb3a49b, 0.75, [0, -6.9, 0], [19.9, 0.1, 19.9]);
   panel(0xfff4e6, 16, [3, 6.6, 3], [4.2, 0.1, 2.6]);
   panel(0xffffff, 7, [-9.7, 2.5, 1], [0.1, 3, 6]);
   panel(0xdcecff, 6, [2, 2, -9.7], [8, 2.2, 0.1]);

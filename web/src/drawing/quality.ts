@@ -1,22 +1,31 @@
 /**
  * How much is drawn, after how long drawing takes. A slow machine (or one that draws in software) first loses clearcoat and
- * pixels, then the shadow; it wins them back only when there is plenty of time, so that the picture does not flicker.
+ * pixels, then shadow and reflections; it wins them back only when there is plenty of time, so that the picture does not flicker.
  */
 export interface Quality {
   readonly name: 'full' | 'medium' | 'low' | 'least';
   /** At most so many canvas pixels per CSS pixel. */
   readonly pixelRatio: number;
   readonly shadow: boolean;
-  /** The physical material with its wet coat, and not the plain one. */
+  /** The physical material with grain and wet coat, and not the plain one. */
   readonly coat: boolean;
+  /** The room shines in tissue and steel, and not the lamps alone. */
+  readonly reflections: boolean;
 }
 
 export const LEVELS: readonly Quality[] = [
-  { name: 'least', pixelRatio: 0.6, shadow: false, coat: false },
-  { name: 'low', pixelRatio: 0.8, shadow: false, coat: false },
-  { name: 'medium', pixelRatio: 1, shadow: true, coat: true },
-  { name: 'full', pixelRatio: 2, shadow: true, coat: true },
+  { name: 'least', pixelRatio: 0.6, shadow: false, coat: false, reflections: false },
+  { name: 'low', pixelRatio: 0.8, shadow: false, coat: false, reflections: true },
+  { name: 'medium', pixelRatio: 1, shadow: true, coat: true, reflections: true },
+  { name: 'full', pixelRatio: 2, shadow: true, coat: true, reflections: true },
 ];
+
+/** Where to begin: as `wanted` says, else low for a machine without graphics of its own, else at the top. */
+export function firstLevel(wanted: string | null, renderer: string): number {
+  const named = LEVELS.findIndex(({ name }) => name === wanted);
+  if (named >= 0) return named;
+  return /swiftshader|llvmpipe|software/i.test(renderer) ? 0 : LEVELS.length - 1;
+}
 
 /** Frames that have to agree before anything changes. */
 const PATIENCE = 12;
@@ -30,9 +39,12 @@ export class QualityControl {
   /** A level that was too slow once is not tried again. */
   private ceiling = LEVELS.length - 1;
   private level: number;
+  private readonly fixed: boolean;
 
-  constructor(start: number = LEVELS.length - 1) {
+  /** `fixed`: stays where it starts, however long drawing takes. */
+  constructor(start: number = LEVELS.length - 1, fixed = false) {
     this.level = start;
+    this.fixed = fixed;
   }
 
   get quality(): Quality {
@@ -42,7 +54,7 @@ export class QualityControl {
   /** Hears how many milliseconds passed between two drawn frames; true when the quality changed. */
   observe(milliseconds: number): boolean {
     // A pause of seconds is a hidden tab, not a slow machine.
-    if (milliseconds > 2000) return false;
+    if (this.fixed || milliseconds > 2000) return false;
     this.slow = milliseconds > SLOW ? this.slow + 1 : 0;
     this.fast = milliseconds < FAST ? this.fast + 1 : 0;
     // The slower the frames, the fewer of them have to tell.

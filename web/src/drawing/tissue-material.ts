@@ -113,6 +113,12 @@ const FRAGMENT_COAT = /* glsl */ `
 #endif
 `;
 
+// Values have to be readable on the dark side as well: a part of their colour shines by itself.
+const FRAGMENT_EMISSION = /* glsl */ `
+totalEmissiveRadiance += 0.4 * valuesShown * diffuseColor.rgb;
+diffuseColor.rgb *= 1.0 - 0.35 * valuesShown;
+`;
+
 export const LIVER_SKIN = new THREE.Color(0.2, 0.034, 0.029);
 
 /** `size`: largest extent of the body [m], which sets how fine its grain is. */
@@ -144,6 +150,7 @@ export function tissueLook(size: number, coat: boolean, skin: THREE.Color = LIVE
         .replace('#include <color_fragment>', `#include <color_fragment>${FRAGMENT_COLOUR}`)
         .replace('#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>${FRAGMENT_ROUGHNESS}`)
         .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>${FRAGMENT_NORMAL}`)
+        .replace('#include <emissivemap_fragment>', `#include <emissivemap_fragment>${FRAGMENT_EMISSION}`)
         .replace('#include <lights_physical_fragment>', `#include <lights_physical_fragment>${FRAGMENT_COAT}`);
   };
   material.addEventListener('dispose', () => ramp.dispose());

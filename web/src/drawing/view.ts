@@ -2,7 +2,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Frame, Scene, Surface } from '../engine/messages';
 import { Lighting, roomReflections } from './light';
-import { QualityControl, type Quality } from './quality';
+import { firstLevel, QualityControl, type Quality } from './quality';
 import { Stage } from './stage';
 
 /** What lies under the pointer. */
@@ -26,7 +26,8 @@ export class View {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
   private readonly lighting = new Lighting();
-  private readonly quality = new QualityControl();
+  private readonly quality: QualityControl;
+  private reflections: THREE.Texture | undefined;
   private readonly caster = new THREE.Raycaster();
   private home: Scene | undefined;
   private shownScene = '';
@@ -38,11 +39,12 @@ export class View {
     this.canvas = canvas;
     // Transparent: the calm ground behind the organ is the page's own, and follows its theme.
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    const wanted = new URLSearchParams(location.search).get('quality');
+    this.quality = new QualityControl(firstLevel(wanted, graphicsOf(this.renderer)), wanted !== null);
     this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
     this.renderer.toneMappingExposure = 1.05;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
-    this.scene.environment = roomReflections(this.renderer);
     this.scene.environmentIntensity = 0.75;
     this.scene.add(this.lighting.group, this.stage.group);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -96,8 +98,10 @@ export class View {
     if (look.lengthSq() === 0) look.set(-0.3, -0.4, -1);
     look.normalize();
     const radius = home.radius > 0 ? home.radius : 1;
-    const narrowest = Math.min(1, this.camera.aspect);
-    const distance = (0.92 * radius) / (Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2) * narrowest);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    // So that a ball of that radius fits into what is left free.
+    const free = Math.min(width - 2 * COVERED_LEFT, height - COVERED_BELOW) / Math.max(1, height);
+    const distance = (0.85 * radius) / (Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2) * Math.max(0.3, free));
     this.camera.up.set(...home.camera.up);
     this.camera.position.copy(centre).addScaledVector(look, -distance);
     this.camera.near = 0.02 * radius;
@@ -187,7 +191,10 @@ export class View {
   }
 
   private apply(quality: Quality): void {
+    if (quality.reflections) this.reflections ??= roomReflections(this.renderer);
+    this.scene.environment = quality.reflections ? (this.reflections ?? null) : null;
     this.lighting.setShadow(quality.shadow);
+    this.lighting.setPlain(!quality.reflections);
     this.stage.setCoat(quality.coat);
     this.invalidate();
   }
@@ -223,4 +230,11 @@ export class View {
     }
     this.renderer.render(this.scene, this.camera);
   }
+}
+
+/** What draws the page, as the browser names it. */
+function graphicsOf(renderer: THREE.WebGLRenderer): string {
+  const context = renderer.getContext();
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  return names ? String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)) : '';
 }

@@ -58,7 +58,6 @@ export class PointerHandling {
       if (tip) this.begin(event, hit.point, tip, false);
       return;
     }
-    if (!this.tools.chosen) return;
     this.tools.begin(hit.point, this.heading(hit.point, hit.normal));
     const goal = this.tools.lead();
     if (goal) this.begin(event, hit.point, goal, true);

@@ -82,13 +82,23 @@ export class Tools {
     this.session.send({ type: 'remove-instrument', instrument });
   }
 
-  /** Begins work at a point of the surface. `heading`: from where a free tool comes. */
+  /** Begins work at a point of the surface. `heading`: from where a free tool comes. With no tool at all, one is brought in. */
   begin(point: Vector3, heading: Vector3): void {
     const instrument = this.chosen;
+    if (!instrument && this.mayDrive) this.bringInAt(point, heading);
     const hand = this.inHand();
     if (!instrument || !hand) return;
     const direction = instrument.trocar ? point.clone().sub(new Vector3(...instrument.trocar)) : heading;
     hand.approach(this.depthOf(instrument, point, direction), direction, this.clearance, 1);
+  }
+
+  /** Brings in the first kind of tool that has a trigger, a little off the tissue. */
+  private bringInAt(point: Vector3, heading: Vector3): void {
+    const kinds = this.session.catalogue?.instruments ?? [];
+    const kind = (kinds.find(({ trigger }) => trigger !== '') ?? kinds[0])?.kind;
+    if (kind === undefined) return;
+    const tip = point.clone().addScaledVector(heading, -this.clearance).toArray();
+    this.wantsNewest = this.session.send({ type: 'add-instrument', kind, tip, direction: heading.toArray() });
   }
 
   /** Takes the tool as it is, to move it without working. */

@@ -22,10 +22,6 @@ const PREFIXED: Record<string, readonly (readonly [unit: string, factor: number]
     ['ms', 1e-3],
     ['s', 1],
   ],
-  N: [
-    ['mN', 1e-3],
-    ['N', 1],
-  ],
   J: [
     ['µJ', 1e-6],
     ['mJ', 1e-3],
