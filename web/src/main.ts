@@ -78,7 +78,8 @@ async function main(): Promise<void> {
   session.on('notice', ({ level, text, help: advice }) => notices.show(level, text, advice));
   session.on('refusal', (refusal) => {
     if (refusal.command === 'move-instrument') return;
-    if (!parameters.showsKey(refusal.key)) notices.show('error', refusal.reason, refusal.help, refusal.excerpt);
+    if (!parameters.showsKey(refusal.key))
+      notices.show('error', refusal.reason, refusal.help, refusal.excerpt);
   });
   exposeState(session, view, tools);
   session.open();

@@ -27,14 +27,22 @@ export class Chart {
     this.unit = unit;
     this.curves = curves;
     this.least = least;
-    const names = curves.length > 1 ? curves.map(({ name }, index) => element('span', { className: `key key-${index + 1}` }, name)) : [];
+    const names =
+      curves.length > 1
+        ? curves.map(({ name }, index) => element('span', { className: `key key-${index + 1}` }, name))
+        : [];
     this.value.setAttribute('aria-label', title);
     this.node = element(
       'figure',
       { className: 'chart' },
       element('figcaption', {}, element('span', {}, title), element('span', { className: 'keys' }, ...names)),
       this.value,
-      element('div', { className: 'plot' }, this.canvas, element('span', { className: 'limits' }, this.top, this.bottom)),
+      element(
+        'div',
+        { className: 'plot' },
+        this.canvas,
+        element('span', { className: 'limits' }, this.top, this.bottom),
+      ),
     );
   }
 
@@ -69,7 +77,8 @@ export class Chart {
     if (!context || clientWidth === 0) return;
     const ratio = Math.min(2, window.devicePixelRatio);
     const [width, height] = [Math.round(ratio * clientWidth), Math.round(ratio * clientHeight)];
-    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    if (this.canvas.width !== width || this.canvas.height !== height)
+      Object.assign(this.canvas, { width, height });
     const style = getComputedStyle(this.node);
     const x = (time: number) => width * (1 - (now - time) / WINDOW);
     const y = (value: number) => (height - 2 * ratio) * (1 - (value - from) / (to - from)) + ratio;

@@ -9,7 +9,10 @@ const PAUSE = 120;
 
 /** Live charts along the lower edge: rate, volume, energy, tool force. */
 export class Charts {
-  readonly node = element('div', { className: 'charts', attributes: { role: 'group', 'aria-label': 'Measurements' } });
+  readonly node = element('div', {
+    className: 'charts',
+    attributes: { role: 'group', 'aria-label': 'Measurements' },
+  });
   private readonly rate = new Series();
   private readonly volume = new Series();
   private readonly elastic = new Series();
@@ -26,7 +29,15 @@ export class Charts {
     this.charts = [
       new Chart('Rate', 'steps/s', [{ name: 'steps', series: this.rate }], 10),
       new Chart('Volume', '%', [{ name: 'volume', series: this.volume }], 0.2),
-      new Chart('Energy', 'J', [{ name: 'elastic', series: this.elastic }, { name: 'kinetic', series: this.kinetic }], 1e-7),
+      new Chart(
+        'Energy',
+        'J',
+        [
+          { name: 'elastic', series: this.elastic },
+          { name: 'kinetic', series: this.kinetic },
+        ],
+        1e-7,
+      ),
       new Chart('Tool force', 'N', [{ name: 'force', series: this.force }], 0.1),
     ];
     this.node.append(...this.charts.map(({ node }) => node));

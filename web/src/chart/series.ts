@@ -22,7 +22,9 @@ export class Series {
   }
 
   get last(): number | undefined {
-    return this.count === 0 ? undefined : this.values[(this.next - 1 + this.values.length) % this.values.length];
+    return this.count === 0
+      ? undefined
+      : this.values[(this.next - 1 + this.values.length) % this.values.length];
   }
 
   /** Points not older than `since`, oldest first. */

@@ -73,7 +73,11 @@ export function fillBar(
   session.on('frame', (frame) => {
     const running = frame.state === 'running';
     relabel(play, running ? 'pause' : 'play', running ? 'Pause (P)' : 'Go on (P)');
-    relabel(record, frame.recording ? 'stop' : 'record', frame.recording ? 'Stop recording and keep the file' : 'Record');
+    relabel(
+      record,
+      frame.recording ? 'stop' : 'record',
+      frame.recording ? 'Stop recording and keep the file' : 'Record',
+    );
     record.classList.toggle('on', frame.recording !== undefined);
     replay.classList.toggle('on', frame.replay !== undefined);
     enable();
@@ -81,18 +85,33 @@ export function fillBar(
 }
 
 function group(title: string, ...children: HTMLElement[]): HTMLElement {
-  return element('div', { className: 'group', attributes: { role: 'group', 'aria-label': title } }, ...children);
+  return element(
+    'div',
+    { className: 'group', attributes: { role: 'group', 'aria-label': title } },
+    ...children,
+  );
 }
 
 function mark(): HTMLElement {
-  return element('img', { src: new URL('../style/icon.svg', import.meta.url).href, alt: '', width: 28, height: 28 });
+  return element('img', {
+    src: new URL('../style/icon.svg', import.meta.url).href,
+    alt: '',
+    width: 28,
+    height: 28,
+  });
 }
 
 function recordings(session: SessionClient, last: ExportedFile | undefined): readonly Entry[] {
   const frame: Frame | undefined = session.frame;
   if (frame?.replay) return [{ title: 'Stop the replay', run: () => session.send({ type: 'stop-replay' }) }];
   const own: Entry[] = last
-    ? [{ title: 'The one just recorded', note: last.name, run: () => session.send({ type: 'replay', bytes: last.bytes }) }]
+    ? [
+        {
+          title: 'The one just recorded',
+          note: last.name,
+          run: () => session.send({ type: 'replay', bytes: last.bytes }),
+        },
+      ]
     : [];
   const known = (session.catalogue?.recordings ?? []).map(({ name, title, seconds }) => ({
     title,
@@ -106,7 +125,10 @@ function recordings(session: SessionClient, last: ExportedFile | undefined): rea
 function keptStates(session: SessionClient): readonly Entry[] {
   const slots = session.scene?.snapshots ?? [];
   const free = slots.findIndex((slot) => slot === null);
-  const oldest = slots.reduce((best, slot, index) => ((slot?.time ?? 0) < (slots[best]?.time ?? 0) ? index : best), 0);
+  const oldest = slots.reduce(
+    (best, slot, index) => ((slot?.time ?? 0) < (slots[best]?.time ?? 0) ? index : best),
+    0,
+  );
   const slot = free >= 0 ? free : oldest;
   const keep: Entry = {
     title: 'Keep the present state',
@@ -115,7 +137,13 @@ function keptStates(session: SessionClient): readonly Entry[] {
   };
   const kept = slots.flatMap((state, index): Entry[] =>
     state
-      ? [{ title: `Back to ${state.time.toFixed(2)} s`, note: `state ${index + 1}`, run: () => session.send({ type: 'restore-snapshot', slot: index }) }]
+      ? [
+          {
+            title: `Back to ${state.time.toFixed(2)} s`,
+            note: `state ${index + 1}`,
+            run: () => session.send({ type: 'restore-snapshot', slot: index }),
+          },
+        ]
       : [],
   );
   return [keep, ...kept];
@@ -133,4 +161,3 @@ function exported(session: SessionClient): readonly Entry[] {
     entry('The scene with its parameters', 'TOML', 'scene'),
   ];
 }
-

@@ -3,7 +3,11 @@ import { icon, type IconName } from './icons';
 
 /** A button with a picture; `label` is its name for all who do not see it, and its tip for all who do. */
 export function iconButton(name: IconName, label: string, onClick?: () => void): HTMLButtonElement {
-  const button = element('button', { type: 'button', className: 'icon-button', title: label, ariaLabel: label }, icon(name));
+  const button = element(
+    'button',
+    { type: 'button', className: 'icon-button', title: label, ariaLabel: label },
+    icon(name),
+  );
   if (onClick) button.addEventListener('click', onClick);
   return button;
 }

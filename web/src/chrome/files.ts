@@ -10,13 +10,20 @@ export function kindOf(name: string, meshFormats: readonly string[]): FileKind |
   const extension = name.slice(name.lastIndexOf('.') + 1).toLowerCase();
   if (extension === 'toml') return 'scene';
   if (extension === 'viscera-recording') return 'recording';
-  return meshFormats.some((format) => format.replace(/^\./, '').toLowerCase() === extension) ? 'mesh' : undefined;
+  return meshFormats.some((format) => format.replace(/^\./, '').toLowerCase() === extension)
+    ? 'mesh'
+    : undefined;
 }
 
 /** Files into the session, by drop or by choice, and files out of it. */
 export class Files {
   readonly overlay: HTMLElement;
-  readonly input = element('input', { type: 'file', className: 'unseen', tabIndex: -1, ariaLabel: 'File to open' });
+  readonly input = element('input', {
+    type: 'file',
+    className: 'unseen',
+    tabIndex: -1,
+    ariaLabel: 'File to open',
+  });
   private readonly session: SessionClient;
   private readonly notices: Notices;
 
@@ -24,7 +31,12 @@ export class Files {
     this.session = session;
     this.notices = notices;
     const formats = element('p', { className: 'note' });
-    this.overlay = element('div', { className: 'drop', hidden: true }, element('p', {}, 'Drop a mesh, a scene or a recording'), formats);
+    this.overlay = element(
+      'div',
+      { className: 'drop', hidden: true },
+      element('p', {}, 'Drop a mesh, a scene or a recording'),
+      formats,
+    );
     session.on('catalogue', ({ meshFormats }) => {
       formats.textContent = `Meshes: ${meshFormats.join(', ')}. Scenes: toml.`;
     });
@@ -48,7 +60,9 @@ export class Files {
       this.session.send({ type: 'open-text', text: await file.text(), name: file.name });
     } else if (kind === 'mesh' || kind === 'recording') {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      this.session.send(kind === 'mesh' ? { type: 'open-mesh', name: file.name, bytes } : { type: 'replay', bytes });
+      this.session.send(
+        kind === 'mesh' ? { type: 'open-mesh', name: file.name, bytes } : { type: 'replay', bytes },
+      );
     } else {
       const help = `Meshes may be ${formats.join(', ')}; scenes are toml.`;
       this.notices.show('error', `${file.name} is nothing that can be opened here.`, help);

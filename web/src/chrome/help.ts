@@ -5,7 +5,10 @@ import { iconButton } from './button';
 const POINTER: readonly (readonly [string, string])[] = [
   ['Press on tissue', 'the tool goes there and works: jaws close, the hook burns, a probe pushes'],
   ['Drag', 'moves it in the plane of the picture'],
-  ['Wheel while pressing, or with Alt', 'moves it in depth; on a tablet a second finger, or the strip at the left'],
+  [
+    'Wheel while pressing, or with Alt',
+    'moves it in depth; on a tablet a second finger, or the strip at the left',
+  ],
   ['Press on a tool', 'takes it in hand and moves it without working'],
   ['Drag beside the tissue, right button', 'turns the view; with Shift or two fingers moves it'],
   ['Wheel, two fingers', 'zooms'],

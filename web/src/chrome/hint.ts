@@ -14,7 +14,11 @@ const WORK: Record<Manner | 'none', readonly [icon: IconName, text: string]> = {
 
 /** How to begin, for those who see the page for the first time. Gone for good once it was read or done. */
 export class Hint {
-  readonly node = element('section', { className: 'hint', hidden: true, attributes: { 'aria-label': 'How to begin' } });
+  readonly node = element('section', {
+    className: 'hint',
+    hidden: true,
+    attributes: { 'aria-label': 'How to begin' },
+  });
   private shown: Manner | 'none' | undefined;
 
   /** `manner`: what the tool in hand does; `none` while there is none. */
@@ -29,10 +33,25 @@ export class Hint {
         'ul',
         {},
         line(...WORK[manner]),
-        line('depth', touch ? 'A second finger, or the strip at the left, moves it in depth.' : 'While pressing, the wheel moves it in depth.'),
-        line('reset', touch ? 'Beside the tissue, a finger turns the view; two move and zoom it.' : 'Beside the tissue, or with the right button, you turn the view; the wheel zooms.'),
+        line(
+          'depth',
+          touch
+            ? 'A second finger, or the strip at the left, moves it in depth.'
+            : 'While pressing, the wheel moves it in depth.',
+        ),
+        line(
+          'reset',
+          touch
+            ? 'Beside the tissue, a finger turns the view; two move and zoom it.'
+            : 'Beside the tissue, or with the right button, you turn the view; the wheel zooms.',
+        ),
       ),
-      element('div', { className: 'hint-foot' }, element('span', { className: 'note' }, touch ? '' : 'H shows all keys.'), close),
+      element(
+        'div',
+        { className: 'hint-foot' },
+        element('span', { className: 'note' }, touch ? '' : 'H shows all keys.'),
+        close,
+      ),
     );
     this.node.hidden = false;
   }

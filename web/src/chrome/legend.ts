@@ -9,7 +9,13 @@ export function legendOf(session: SessionClient): HTMLElement {
   const title = element('figcaption');
   const ramp = element('div', { className: 'ramp' });
   const [low, middle, high] = [element('span'), element('span'), element('span')];
-  const node = element('figure', { className: 'legend', hidden: true }, title, ramp, element('div', { className: 'ends' }, low, middle, high));
+  const node = element(
+    'figure',
+    { className: 'legend', hidden: true },
+    title,
+    ramp,
+    element('div', { className: 'ends' }, low, middle, high),
+  );
   let painted = '';
   session.on('frame', ({ colouring }) => {
     const map = mapOf(colouring.by, colouring.low);

@@ -8,7 +8,11 @@ export interface Entry {
 }
 
 /** Hangs a list of entries below a button: the browser's own popover, with arrow keys. Entries are asked for when it opens. */
-export function menuOn(button: HTMLButtonElement, title: string, entries: () => readonly Entry[]): HTMLElement {
+export function menuOn(
+  button: HTMLButtonElement,
+  title: string,
+  entries: () => readonly Entry[],
+): HTMLElement {
   const menu = element('div', {
     id: freshId('menu'),
     className: 'menu',

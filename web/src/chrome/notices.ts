@@ -8,9 +8,17 @@ const MOST = 4;
 
 /** What the engine has to say, at the top of the picture: newest first, and the same thing once. */
 export class Notices {
-  readonly node = element('div', { className: 'notices', attributes: { role: 'log', 'aria-live': 'polite', 'aria-label': 'Notices' } });
+  readonly node = element('div', {
+    className: 'notices',
+    attributes: { role: 'log', 'aria-live': 'polite', 'aria-label': 'Notices' },
+  });
 
-  show(level: Notice['level'], text: string, help = '', excerpt?: { source: string; line: number; text: string; column: number; length: number }): void {
+  show(
+    level: Notice['level'],
+    text: string,
+    help = '',
+    excerpt?: { source: string; line: number; text: string; column: number; length: number },
+  ): void {
     for (const other of this.node.children) {
       if (other instanceof HTMLElement && other.dataset['text'] === text) other.remove();
     }
@@ -35,7 +43,19 @@ export class Notices {
 }
 
 /** The line of a text in which something is wrong, with the place marked. */
-function excerptOf({ source, line, text, column, length }: { source: string; line: number; text: string; column: number; length: number }): HTMLElement {
+function excerptOf({
+  source,
+  line,
+  text,
+  column,
+  length,
+}: {
+  source: string;
+  line: number;
+  text: string;
+  column: number;
+  length: number;
+}): HTMLElement {
   const begin = Math.max(0, column - 1);
   return element(
     'pre',

@@ -8,7 +8,10 @@ export function scenePicker(session: SessionClient): HTMLElement {
     const { catalogue, scene, role } = session;
     select.disabled = role.role !== 'controller';
     const scenes = catalogue?.scenes ?? [];
-    const own = scene && !scenes.some(({ name }) => name === scene.name) ? [{ name: '', title: scene.title || scene.name }] : [];
+    const own =
+      scene && !scenes.some(({ name }) => name === scene.name)
+        ? [{ name: '', title: scene.title || scene.name }]
+        : [];
     const options = [...own, ...scenes];
     const titles = options.map(({ title }) => title).join('\n');
     if (select.dataset['titles'] !== titles) {

@@ -11,8 +11,14 @@ const DEPTH_PER_PIXEL = 0.002;
 
 /** The tools at the left: which there are, which is in hand, hold, and a strip for depth where there is no wheel. */
 export class ToolStrip {
-  readonly node = element('div', { className: 'tools', attributes: { role: 'group', 'aria-label': 'Tools' } });
-  private readonly list = element('div', { className: 'tool-list', attributes: { role: 'radiogroup', 'aria-label': 'Tool in hand' } });
+  readonly node = element('div', {
+    className: 'tools',
+    attributes: { role: 'group', 'aria-label': 'Tools' },
+  });
+  private readonly list = element('div', {
+    className: 'tool-list',
+    attributes: { role: 'radiogroup', 'aria-label': 'Tool in hand' },
+  });
   private readonly hold: HTMLButtonElement;
   private readonly remove: HTMLButtonElement;
   private readonly session: SessionClient;
@@ -22,8 +28,18 @@ export class ToolStrip {
   constructor(session: SessionClient, tools: Tools, deepen: (part: number) => void) {
     this.session = session;
     this.tools = tools;
-    const add = element('button', { type: 'button', className: 'tool', title: 'Bring in another tool' }, icon('add'), 'Add');
-    this.hold = element('button', { type: 'button', className: 'tool hold', ariaPressed: 'false' }, icon('hold'), 'Hold');
+    const add = element(
+      'button',
+      { type: 'button', className: 'tool', title: 'Bring in another tool' },
+      icon('add'),
+      'Add',
+    );
+    this.hold = element(
+      'button',
+      { type: 'button', className: 'tool hold', ariaPressed: 'false' },
+      icon('hold'),
+      'Hold',
+    );
     this.hold.addEventListener('click', () => tools.toggleTrigger());
     this.remove = iconButton('remove', 'Take this tool away', () => {
       if (tools.chosen) tools.remove(tools.chosen.instrument);
@@ -31,11 +47,15 @@ export class ToolStrip {
     this.remove.classList.add('remove');
     const depth = depthStrip(deepen);
     this.node.append(this.list, add, this.hold, depth, this.remove);
-    this.node.append(menuOn(add, 'Bring in', () => (session.catalogue?.instruments ?? []).map((kind) => ({
-      title: kind.title,
-      note: kind.summary,
-      run: () => tools.add(kind.kind),
-    }))));
+    this.node.append(
+      menuOn(add, 'Bring in', () =>
+        (session.catalogue?.instruments ?? []).map((kind) => ({
+          title: kind.title,
+          note: kind.summary,
+          run: () => tools.add(kind.kind),
+        })),
+      ),
+    );
     session.on('catalogue', () => this.show());
     session.on('scene', () => this.show());
     session.on('role', () => this.show());
@@ -49,13 +69,17 @@ export class ToolStrip {
       this.list.replaceChildren(...list.map((instrument, index) => this.button(instrument, index)));
     }
     for (const button of this.list.children) {
-      button.setAttribute('aria-checked', String(button instanceof HTMLElement && button.dataset['instrument'] === String(chosen?.instrument)));
+      button.setAttribute(
+        'aria-checked',
+        String(button instanceof HTMLElement && button.dataset['instrument'] === String(chosen?.instrument)),
+      );
     }
     const trigger = this.kindOf(chosen)?.trigger ?? '';
     this.hold.hidden = this.remove.hidden = !chosen;
     this.hold.disabled = this.remove.disabled = !mayDrive;
     this.hold.ariaPressed = String(latched);
-    this.hold.title = trigger === '' ? 'This tool has no trigger' : `Keep on without pressing: ${trigger} (space)`;
+    this.hold.title =
+      trigger === '' ? 'This tool has no trigger' : `Keep on without pressing: ${trigger} (space)`;
     if (trigger === '') this.hold.hidden = true;
   }
 
@@ -87,7 +111,12 @@ export class ToolStrip {
 
 /** A strip to drag on: up is deeper. For fingers, which have no wheel; hidden where there is a mouse. */
 function depthStrip(deepen: (part: number) => void): HTMLElement {
-  const strip = element('div', { className: 'depth', title: 'Drag: deeper, or nearer', ariaHidden: 'true' }, icon('depth'), 'Depth');
+  const strip = element(
+    'div',
+    { className: 'depth', title: 'Drag: deeper, or nearer', ariaHidden: 'true' },
+    icon('depth'),
+    'Depth',
+  );
   let from: number | undefined;
   strip.addEventListener('pointerdown', (event) => {
     from = event.clientY;
@@ -98,7 +127,8 @@ function depthStrip(deepen: (part: number) => void): HTMLElement {
     deepen((from - event.clientY) * DEPTH_PER_PIXEL);
     from = event.clientY;
   });
-  for (const end of ['pointerup', 'pointercancel'] as const) strip.addEventListener(end, () => (from = undefined));
+  for (const end of ['pointerup', 'pointercancel'] as const)
+    strip.addEventListener(end, () => (from = undefined));
   return strip;
 }
 

@@ -19,7 +19,10 @@ export class Ghost {
 
   setSurface(surface: Surface): void {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(surface.rest.slice(), 3).setUsage(THREE.DynamicDrawUsage));
+    geometry.setAttribute(
+      'position',
+      new THREE.BufferAttribute(surface.rest.slice(), 3).setUsage(THREE.DynamicDrawUsage),
+    );
     geometry.setIndex(new THREE.BufferAttribute(edgesOf(surface.triangles, surface.vertices), 1));
     this.lines.geometry.dispose();
     this.lines.geometry = this.hidden.geometry = geometry;

@@ -4,7 +4,12 @@ import type { FrameInstrument, SceneInstrument } from '../engine/messages';
 const STEEL = new THREE.MeshStandardMaterial({ color: 0xc9cfd2, metalness: 0.85, roughness: 0.26 });
 const SLEEVE = new THREE.MeshStandardMaterial({ color: 0x1d2326, metalness: 0.1, roughness: 0.42 });
 const RING = new THREE.MeshStandardMaterial({ color: 0x2f8f88, metalness: 0.2, roughness: 0.4 });
-const CHOSEN_RING = new THREE.MeshStandardMaterial({ color: 0xf0b266, emissive: 0x6b3d05, metalness: 0.2, roughness: 0.4 });
+const CHOSEN_RING = new THREE.MeshStandardMaterial({
+  color: 0xf0b266,
+  emissive: 0x6b3d05,
+  metalness: 0.2,
+  roughness: 0.4,
+});
 const ROUND = 24;
 
 /**
@@ -24,7 +29,11 @@ export class DrawnInstrument {
     this.glow = STEEL.clone();
     this.glow.emissive.set(0xff6a1f);
     this.glow.emissiveIntensity = 0;
-    const front = description.jaw ? this.addJaws(description.jaw) : description.hook ? this.addHook(description.hook) : this.addTip();
+    const front = description.jaw
+      ? this.addJaws(description.jaw)
+      : description.hook
+        ? this.addHook(description.hook)
+        : this.addTip();
     this.ring = this.addShaft(front);
     this.group.traverse((part) => {
       part.castShadow = true;
@@ -96,7 +105,10 @@ export class DrawnInstrument {
       this.jaws.push(blade);
       this.group.add(blade);
     }
-    const pin = new THREE.Mesh(new THREE.CylinderGeometry(0.9 * jaw.radius, 0.9 * jaw.radius, 2.6 * jaw.radius, ROUND), STEEL);
+    const pin = new THREE.Mesh(
+      new THREE.CylinderGeometry(0.9 * jaw.radius, 0.9 * jaw.radius, 2.6 * jaw.radius, ROUND),
+      STEEL,
+    );
     pin.rotation.z = Math.PI / 2;
     pin.position.z = hinge;
     this.group.add(pin);
@@ -128,7 +140,10 @@ export class DrawnInstrument {
 const FORWARD = new THREE.Vector3(0, 0, 1);
 
 function rod(radius: number, from: number, to: number, material: THREE.Material): THREE.Mesh {
-  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, Math.abs(to - from), ROUND), material);
+  const mesh = new THREE.Mesh(
+    new THREE.CylinderGeometry(radius, radius, Math.abs(to - from), ROUND),
+    material,
+  );
   mesh.rotation.x = Math.PI / 2;
   mesh.position.z = 0.5 * (from + to);
   return mesh;

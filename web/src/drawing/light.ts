@@ -27,7 +27,14 @@ export class Lighting {
     this.rim.target.position.copy(centre);
     const camera = this.key.shadow.camera;
     const reach = 1.7 * radius;
-    Object.assign(camera, { left: -reach, right: reach, bottom: -reach, top: reach, near: radius, far: 9 * radius });
+    Object.assign(camera, {
+      left: -reach,
+      right: reach,
+      bottom: -reach,
+      top: reach,
+      near: radius,
+      far: 9 * radius,
+    });
     camera.updateProjectionMatrix();
     // In units of the scene, so that an organ in metres and one in millimetres are shaded alike.
     this.key.shadow.normalBias = 0.012 * radius;
@@ -55,7 +62,10 @@ export function roomReflections(renderer: THREE.WebGLRenderer): THREE.Texture {
   const room = new THREE.Scene();
   const box = new THREE.BoxGeometry(1, 1, 1);
   const panel = (colour: number, strength: number, place: THREE.Vector3Tuple, size: THREE.Vector3Tuple) => {
-    const material = new THREE.MeshBasicMaterial({ color: new THREE.Color(colour).multiplyScalar(strength), side: THREE.DoubleSide });
+    const material = new THREE.MeshBasicMaterial({
+      color: new THREE.Color(colour).multiplyScalar(strength),
+      side: THREE.DoubleSide,
+    });
     const mesh = new THREE.Mesh(box, material);
     mesh.position.set(...place);
     mesh.scale.set(...size);

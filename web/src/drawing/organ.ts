@@ -42,7 +42,8 @@ export class Organ {
     gather(surface.rest, drawn.source, rest);
     const marks = new Float32Array(2 * count);
     for (let vertex = 0; vertex < count; vertex++) marks[2 * vertex + 1] = drawn.inner[vertex]!;
-    const changing = (array: Float32Array, size: number) => new THREE.BufferAttribute(array, size).setUsage(THREE.DynamicDrawUsage);
+    const changing = (array: Float32Array, size: number) =>
+      new THREE.BufferAttribute(array, size).setUsage(THREE.DynamicDrawUsage);
     geometry.setAttribute('position', changing(rest.slice(), 3));
     geometry.setAttribute('normal', changing(new Float32Array(3 * count), 3));
     geometry.setAttribute('rest', new THREE.BufferAttribute(rest, 3));
@@ -66,7 +67,8 @@ export class Organ {
     this.renewNormals();
     if (body.seared) {
       const mark = this.attribute('mark');
-      for (let vertex = 0; vertex < drawn.source.length; vertex++) mark.array[2 * vertex] = body.seared[drawn.source[vertex]!] ?? 0;
+      for (let vertex = 0; vertex < drawn.source.length; vertex++)
+        mark.array[2 * vertex] = body.seared[drawn.source[vertex]!] ?? 0;
       mark.needsUpdate = true;
     }
     if (this.shown && body.scalars) {
@@ -74,7 +76,10 @@ export class Organ {
       const { low, high } = this.shown;
       const scale = high > low ? 1 / (high - low) : 0;
       for (let vertex = 0; vertex < drawn.source.length; vertex++) {
-        value.array[vertex] = Math.min(1, Math.max(0, ((body.scalars[drawn.source[vertex]!] ?? 0) - low) * scale));
+        value.array[vertex] = Math.min(
+          1,
+          Math.max(0, ((body.scalars[drawn.source[vertex]!] ?? 0) - low) * scale),
+        );
       }
       value.needsUpdate = true;
     }

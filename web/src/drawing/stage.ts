@@ -47,11 +47,14 @@ export class Stage {
     frame.bodies.forEach((state, index) => {
       const body = this.bodies[index];
       if (body instanceof Organ) {
-        body.showValues(map && state.scalars ? { map, low: frame.colouring.low, high: frame.colouring.high } : null);
+        body.showValues(
+          map && state.scalars ? { map, low: frame.colouring.low, high: frame.colouring.high } : null,
+        );
       }
       body?.setFrame(state);
     });
-    for (const instrument of frame.instruments) this.instruments.get(instrument.instrument)?.setFrame(instrument);
+    for (const instrument of frame.instruments)
+      this.instruments.get(instrument.instrument)?.setFrame(instrument);
   }
 
   setChosen(instrument: number | undefined): void {
@@ -89,7 +92,8 @@ export class Stage {
     for (const body of this.bodies) {
       if (!(body instanceof Organ)) continue;
       const positions = body.mesh.geometry.getAttribute('position') as THREE.BufferAttribute | undefined;
-      for (let vertex = 0; vertex < (positions?.count ?? 0); vertex++) lowest = Math.min(lowest, positions!.getY(vertex));
+      for (let vertex = 0; vertex < (positions?.count ?? 0); vertex++)
+        lowest = Math.min(lowest, positions!.getY(vertex));
     }
     return Number.isFinite(lowest) ? lowest : otherwise;
   }
@@ -135,6 +139,9 @@ export class Stage {
   }
 }
 
-function sameShape(one: Scene['instruments'][number], other: Scene['instruments'][number] | undefined): boolean {
+function sameShape(
+  one: Scene['instruments'][number],
+  other: Scene['instruments'][number] | undefined,
+): boolean {
   return JSON.stringify(one) === JSON.stringify(other);
 }

@@ -143,7 +143,9 @@ export function tissueLook(size: number, coat: boolean, skin: THREE.Color = LIVE
   if (coat) material.defines = { ...material.defines, TISSUE_GRAIN: '' };
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = VERTEX_HEAD + shader.vertexShader.replace('#include <begin_vertex>', `#include <begin_vertex>${VERTEX_BODY}`);
+    shader.vertexShader =
+      VERTEX_HEAD +
+      shader.vertexShader.replace('#include <begin_vertex>', `#include <begin_vertex>${VERTEX_BODY}`);
     shader.fragmentShader =
       FRAGMENT_HEAD +
       shader.fragmentShader
@@ -151,7 +153,10 @@ export function tissueLook(size: number, coat: boolean, skin: THREE.Color = LIVE
         .replace('#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>${FRAGMENT_ROUGHNESS}`)
         .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>${FRAGMENT_NORMAL}`)
         .replace('#include <emissivemap_fragment>', `#include <emissivemap_fragment>${FRAGMENT_EMISSION}`)
-        .replace('#include <lights_physical_fragment>', `#include <lights_physical_fragment>${FRAGMENT_COAT}`);
+        .replace(
+          '#include <lights_physical_fragment>',
+          `#include <lights_physical_fragment>${FRAGMENT_COAT}`,
+        );
   };
   material.addEventListener('dispose', () => ramp.dispose());
   return {

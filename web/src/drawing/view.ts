@@ -101,7 +101,8 @@ export class View {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     // So that a ball of that radius fits into what is left free.
     const free = Math.min(width - 2 * COVERED_LEFT, height - COVERED_BELOW) / Math.max(1, height);
-    const distance = (0.85 * radius) / (Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2) * Math.max(0.3, free));
+    const distance =
+      (0.85 * radius) / (Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2) * Math.max(0.3, free));
     this.camera.up.set(...home.camera.up);
     this.camera.position.copy(centre).addScaledVector(look, -distance);
     this.camera.near = 0.02 * radius;
@@ -140,7 +141,11 @@ export class View {
 
   zoom(factor: number): void {
     const offset = this.camera.position.clone().sub(this.controls.target);
-    const length = THREE.MathUtils.clamp(offset.length() * factor, this.controls.minDistance, this.controls.maxDistance);
+    const length = THREE.MathUtils.clamp(
+      offset.length() * factor,
+      this.controls.minDistance,
+      this.controls.maxDistance,
+    );
     this.camera.position.copy(this.controls.target).add(offset.setLength(length));
     this.controls.update();
   }
@@ -163,7 +168,10 @@ export class View {
   project(point: THREE.Vector3): { x: number; y: number } {
     const bounds = this.canvas.getBoundingClientRect();
     const shown = point.clone().project(this.camera);
-    return { x: bounds.left + (0.5 + 0.5 * shown.x) * bounds.width, y: bounds.top + (0.5 - 0.5 * shown.y) * bounds.height };
+    return {
+      x: bounds.left + (0.5 + 0.5 * shown.x) * bounds.width,
+      y: bounds.top + (0.5 - 0.5 * shown.y) * bounds.height,
+    };
   }
 
   /** The picture as it is now, over the page's ground. */
@@ -226,7 +234,14 @@ export class View {
       this.renderer.setSize(clientWidth, clientHeight, false);
       this.camera.aspect = clientWidth / clientHeight;
       // The middle of the picture is the middle of what tools and charts leave free of it.
-      this.camera.setViewOffset(clientWidth, clientHeight, -COVERED_LEFT / 2, COVERED_BELOW / 2, clientWidth, clientHeight);
+      this.camera.setViewOffset(
+        clientWidth,
+        clientHeight,
+        -COVERED_LEFT / 2,
+        COVERED_BELOW / 2,
+        clientWidth,
+        clientHeight,
+      );
     }
     this.renderer.render(this.scene, this.camera);
   }

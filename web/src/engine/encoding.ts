@@ -49,7 +49,9 @@ export function decodeMessage(bytes: Uint8Array): Message | undefined {
 type Fields = Record<string, unknown>;
 
 function isMap(value: unknown): value is Fields {
-  return typeof value === 'object' && value !== null && !Array.isArray(value) && !(value instanceof Uint8Array);
+  return (
+    typeof value === 'object' && value !== null && !Array.isArray(value) && !(value instanceof Uint8Array)
+  );
 }
 
 function list(fields: Fields, key: string): Fields[] {
@@ -66,7 +68,8 @@ function bulk(fields: Fields, key: string): Uint8Array {
 
 // Bytes inside a message begin anywhere, typed arrays only at multiples of four: copied where they have to be.
 function aligned(bytes: Uint8Array): Uint8Array {
-  if (bytes.byteLength % 4 !== 0) throw new EncodingError(`a bulk array of ${bytes.byteLength} bytes is cut off`);
+  if (bytes.byteLength % 4 !== 0)
+    throw new EncodingError(`a bulk array of ${bytes.byteLength} bytes is cut off`);
   return bytes.byteOffset % 4 === 0 ? bytes : bytes.slice();
 }
 

@@ -15,7 +15,15 @@ export type Command = { request?: number } & (
   | { type: 'set'; key: string; value: ParameterValue }
   | { type: 'add-instrument'; kind: string; tip?: Vector; direction?: Vector }
   | { type: 'remove-instrument'; instrument: number }
-  | { type: 'move-instrument'; instrument: number; tip: Vector; direction: Vector; roll: number; trigger: number; stamp?: number }
+  | {
+      type: 'move-instrument';
+      instrument: number;
+      tip: Vector;
+      direction: Vector;
+      roll: number;
+      trigger: number;
+      stamp?: number;
+    }
   | { type: 'pause' | 'play' | 'reset' | 'start-recording' | 'stop-recording' | 'stop-replay' }
   | { type: 'step'; count?: number }
   | { type: 'take-snapshot' | 'restore-snapshot'; slot: number }

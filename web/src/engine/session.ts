@@ -16,9 +16,7 @@ import {
 import type { Transport } from './transport';
 
 export type Connection =
-  | { state: 'connecting' }
-  | { state: 'connected' }
-  | { state: 'lost'; reason: string; again: boolean };
+  { state: 'connecting' } | { state: 'connected' } | { state: 'lost'; reason: string; again: boolean };
 
 interface Events {
   connection: Connection;
@@ -97,7 +95,12 @@ export class SessionClient {
     } catch (error) {
       if (!(error instanceof EncodingError)) throw error;
       const help = 'Reload the page; if it comes again, page and program are of different versions.';
-      this.emit('notice', { type: 'notice', level: 'error', text: `A message could not be read: ${error.message}.`, help });
+      this.emit('notice', {
+        type: 'notice',
+        level: 'error',
+        text: `A message could not be read: ${error.message}.`,
+        help,
+      });
       return;
     }
     if (message) this.take(message);

@@ -16,7 +16,10 @@ interface WasmModule {
 
 // Globs, as the module is there only after `build-engine.sh`: without it the page still builds, and says what is missing.
 const modules = import.meta.glob<WasmModule>('./generated/viscera_web.js');
-const binaries = import.meta.glob<string>('./generated/viscera_web_bg.wasm', { query: '?url', import: 'default' });
+const binaries = import.meta.glob<string>('./generated/viscera_web_bg.wasm', {
+  query: '?url',
+  import: 'default',
+});
 
 /** Seconds between two turns of the loop, and how many of them may be spent computing. */
 const TURN = 0.016;
@@ -36,7 +39,10 @@ function postAll(all: Uint8Array<ArrayBuffer>[], frame: boolean): void {
 async function begin(): Promise<void> {
   const load = modules['./generated/viscera_web.js'];
   const locate = binaries['./generated/viscera_web_bg.wasm'];
-  if (!load || !locate) throw new Error('This page was built without the engine: run `npm run build:engine`, then build the page again.');
+  if (!load || !locate)
+    throw new Error(
+      'This page was built without the engine: run `npm run build:engine`, then build the page again.',
+    );
   const module = await load();
   await module.default({ module_or_path: await locate() });
   const session = new module.Session();

@@ -41,7 +41,8 @@ export class WebSocketTransport implements Transport {
       this.attempts = 0;
       this.listener?.opened();
     };
-    socket.onmessage = (event: MessageEvent<ArrayBuffer>) => this.listener?.received(new Uint8Array(event.data));
+    socket.onmessage = (event: MessageEvent<ArrayBuffer>) =>
+      this.listener?.received(new Uint8Array(event.data));
     // An error is always followed by a close, which says more.
     socket.onclose = (event) => this.retry(event);
   }

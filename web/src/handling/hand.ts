@@ -34,7 +34,10 @@ export class Hand {
     const above = tip.clone().addScaledVector(heading, -clearance);
     this.goals = [];
     if (here.distanceTo(tip) > clearance) {
-      this.goals.push({ tip: here.clone().addScaledVector(this.pose.direction.clone().normalize(), -clearance), trigger: 0 });
+      this.goals.push({
+        tip: here.clone().addScaledVector(this.pose.direction.clone().normalize(), -clearance),
+        trigger: 0,
+      });
       this.goals.push({ tip: above, direction: heading, trigger: 0 });
     }
     this.goals.push({ tip: tip.clone(), direction: heading, trigger: 0 });
@@ -59,7 +62,8 @@ export class Hand {
   release(clearance: number): void {
     this.pose.trigger = 0;
     const heading = this.pose.direction.clone().normalize();
-    this.goals = clearance > 0 ? [{ tip: this.pose.tip.clone().addScaledVector(heading, -clearance), trigger: 0 }] : [];
+    this.goals =
+      clearance > 0 ? [{ tip: this.pose.tip.clone().addScaledVector(heading, -clearance), trigger: 0 }] : [];
   }
 
   setTrigger(trigger: number): void {

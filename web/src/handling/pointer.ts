@@ -35,7 +35,8 @@ export class PointerHandling {
     // Capturing, so that a press on tissue is known before the camera hears of it.
     canvas.addEventListener('pointerdown', (event) => this.down(event), { capture: true });
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (event) => this.up(event));
+    for (const end of ['pointerup', 'pointercancel'] as const)
+      canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener('wheel', (event) => this.wheel(event), { capture: true, passive: false });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   }
@@ -49,7 +50,8 @@ export class PointerHandling {
       if (event.pointerType === 'touch') this.drag.second = { pointer: event.pointerId, y: event.clientY };
       return;
     }
-    if (event.button !== 0 || event.ctrlKey || event.metaKey || event.shiftKey || !this.tools.mayDrive) return;
+    if (event.button !== 0 || event.ctrlKey || event.metaKey || event.shiftKey || !this.tools.mayDrive)
+      return;
     const hit = this.view.pick(event.clientX, event.clientY);
     if (!hit) return;
     if (hit.kind === 'instrument') {

@@ -162,7 +162,11 @@ export class Tools {
     const radius = this.session.scene?.radius ?? 1;
     const manner = mannerOf(instrument);
     const depth =
-      manner === 'grasp' ? 0.35 * (instrument.jaw?.length ?? 0) : manner === 'burn' ? instrument.shaft.radius : 0.14 * radius;
+      manner === 'grasp'
+        ? 0.35 * (instrument.jaw?.length ?? 0)
+        : manner === 'burn'
+          ? instrument.shaft.radius
+          : 0.14 * radius;
     return point.clone().addScaledVector(direction.clone().normalize(), depth);
   }
 

@@ -18,7 +18,11 @@ export class Row {
   readonly refusal = element('p', { className: 'refusal', hidden: true, attributes: { role: 'alert' } });
 
   constructor(parameter: Parameter, labelled: string, body: HTMLElement, beside?: HTMLElement) {
-    const label = element('label', { className: 'name', htmlFor: labelled, title: parameter.summary }, parameter.title);
+    const label = element(
+      'label',
+      { className: 'name', htmlFor: labelled, title: parameter.summary },
+      parameter.title,
+    );
     const mark =
       parameter.effect === 'restarts'
         ? element('span', { className: 'restarts', title: 'A change starts the scene again' }, 'restarts')

@@ -9,7 +9,12 @@ export class FlagControl implements Control {
 
   constructor(parameter: FlagParameter, change: Change) {
     const id = freshId('flag');
-    this.box = element('input', { id, type: 'checkbox', className: 'switch', attributes: { role: 'switch' } });
+    this.box = element('input', {
+      id,
+      type: 'checkbox',
+      className: 'switch',
+      attributes: { role: 'switch' },
+    });
     this.box.addEventListener('change', () => change(parameter.key, this.box.checked));
     this.row = new Row(parameter, id, element('span', { hidden: true }), this.box);
     this.update(parameter);

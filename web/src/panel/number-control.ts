@@ -59,7 +59,10 @@ export class NumberControl implements Control {
 
   private get unit() {
     const { unit, low, high, scale } = this.parameter;
-    return shownUnit(unit, scale === 'logarithmic' && low > 0 ? Math.sqrt(low * high) : 0.5 * (Math.abs(low) + Math.abs(high)));
+    return shownUnit(
+      unit,
+      scale === 'logarithmic' && low > 0 ? Math.sqrt(low * high) : 0.5 * (Math.abs(low) + Math.abs(high)),
+    );
   }
 
   private listen(): void {
@@ -69,7 +72,8 @@ export class NumberControl implements Control {
       this.field.value = shownNumber(value / this.unit.factor);
       this.announce(value);
       // What restarts the scene waits until the slider is let go.
-      if (this.parameter.effect === 'continues' && performance.now() - this.lastSaid > PAUSE) this.sayChange(value);
+      if (this.parameter.effect === 'continues' && performance.now() - this.lastSaid > PAUSE)
+        this.sayChange(value);
     });
     this.slider.addEventListener('change', () => {
       this.dragging = false;
@@ -105,7 +109,8 @@ export class NumberControl implements Control {
 
   private show(): void {
     const { value } = this.parameter;
-    if (document.activeElement !== this.field && !this.dragging) this.field.value = shownNumber(value / this.unit.factor);
+    if (document.activeElement !== this.field && !this.dragging)
+      this.field.value = shownNumber(value / this.unit.factor);
     if (!this.dragging) this.slider.value = String(positionOf(value, this.parameter));
     this.announce(value);
   }

@@ -61,7 +61,8 @@ export class ParameterPanel {
     }
     this.node.replaceChildren(...[...groups].map(([group, rows]) => this.section(group, rows)));
     // A choice of law may bring other parameters; whoever was there stays there.
-    if (focused !== undefined) this.controls.get(focused)?.node.querySelector<HTMLElement>('input, select')?.focus();
+    if (focused !== undefined)
+      this.controls.get(focused)?.node.querySelector<HTMLElement>('input, select')?.focus();
   }
 
   private section(group: string, rows: HTMLElement[]): HTMLElement {
@@ -71,7 +72,9 @@ export class ParameterPanel {
       element('summary', {}, element('h2', {}, group)),
       ...rows,
     );
-    section.addEventListener('toggle', () => (section.open ? this.closed.delete(group) : this.closed.add(group)));
+    section.addEventListener('toggle', () =>
+      section.open ? this.closed.delete(group) : this.closed.add(group),
+    );
     return section;
   }
 

@@ -16,8 +16,15 @@ export class ShownPanel {
     const colouringId = freshId('colouring');
     const ghostId = freshId('ghost');
     this.colouring = element('select', { id: colouringId });
-    this.ghost = element('input', { id: ghostId, type: 'checkbox', className: 'switch', attributes: { role: 'switch' } });
-    this.colouring.addEventListener('change', () => session.send({ type: 'colour', by: this.colouring.value }));
+    this.ghost = element('input', {
+      id: ghostId,
+      type: 'checkbox',
+      className: 'switch',
+      attributes: { role: 'switch' },
+    });
+    this.colouring.addEventListener('change', () =>
+      session.send({ type: 'colour', by: this.colouring.value }),
+    );
     this.ghost.addEventListener('change', () => session.send({ type: 'ghost', on: this.ghost.checked }));
     this.node = element(
       'section',
@@ -26,7 +33,11 @@ export class ShownPanel {
       element(
         'div',
         { className: 'row' },
-        element('div', { className: 'row-head' }, element('label', { className: 'name', htmlFor: colouringId }, 'Colours')),
+        element(
+          'div',
+          { className: 'row-head' },
+          element('label', { className: 'name', htmlFor: colouringId }, 'Colours'),
+        ),
         this.colouring,
         this.summary,
       ),
@@ -44,7 +55,9 @@ export class ShownPanel {
     );
     session.on('catalogue', ({ colourings }) => {
       this.colouring.replaceChildren(
-        ...colourings.map(({ name, title, unit }) => element('option', { value: name }, unit ? `${title} [${unit}]` : title)),
+        ...colourings.map(({ name, title, unit }) =>
+          element('option', { value: name }, unit ? `${title} [${unit}]` : title),
+        ),
       );
       this.show();
     });
@@ -59,11 +72,16 @@ export class ShownPanel {
     this.colouring.value = scene.colouring;
     this.ghost.checked = scene.ghost;
     say(this.summary, catalogue?.colourings.find(({ name }) => name === scene.colouring)?.summary ?? '');
-    this.facts.replaceChildren(...factsOf(scene).flatMap(([what, value]) => [element('dt', {}, what), element('dd', {}, value)]));
+    this.facts.replaceChildren(
+      ...factsOf(scene).flatMap(([what, value]) => [element('dt', {}, what), element('dd', {}, value)]),
+    );
   }
 }
 
 function factsOf(scene: Scene): [what: string, value: string][] {
   const bodies = scene.bodies.filter(({ ghostOf }) => ghostOf === undefined);
-  return bodies.map(({ name, cells, nodes }) => [name, `${cells.toLocaleString('en')} cells, ${nodes.toLocaleString('en')} nodes`]);
+  return bodies.map(({ name, cells, nodes }) => [
+    name,
+    `${cells.toLocaleString('en')} cells, ${nodes.toLocaleString('en')} nodes`,
+  ]);
 }

@@ -23,7 +23,12 @@ export class VectorControl implements Control {
       }),
     );
     const cells = this.fields.map((field, index) =>
-      element('span', { className: 'component' }, element('span', { className: 'unit', ariaHidden: 'true' }, AXES[index]!), field),
+      element(
+        'span',
+        { className: 'component' },
+        element('span', { className: 'unit', ariaHidden: 'true' }, AXES[index]!),
+        field,
+      ),
     );
     const unit = parameter.unit ? element('span', { className: 'unit' }, parameter.unit) : undefined;
     this.row = new Row(parameter, first, element('div', { className: 'vector' }, ...cells), unit);

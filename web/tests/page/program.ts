@@ -7,8 +7,11 @@ import { PROGRAM_PORT } from '../../playwright.config';
 function programFile(): string {
   const target = process.env['CARGO_TARGET_DIR'] ?? '../target';
   const named = process.env['VISCERA'];
-  const found = [named, `${target}/release/viscera`, `${target}/debug/viscera`].find((file) => file !== undefined && existsSync(file));
-  if (!found) throw new Error('These tests need the program: run `cargo build -p viscera-cli`, or name it in VISCERA.');
+  const found = [named, `${target}/release/viscera`, `${target}/debug/viscera`].find(
+    (file) => file !== undefined && existsSync(file),
+  );
+  if (!found)
+    throw new Error('These tests need the program: run `cargo build -p viscera-cli`, or name it in VISCERA.');
   return found;
 }
 
@@ -18,9 +21,12 @@ export class Program {
   said = '';
 
   async start(): Promise<void> {
-    const child = spawn(programFile(), ['serve', '--port', String(PROGRAM_PORT), '--no-open'], { stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(programFile(), ['serve', '--port', String(PROGRAM_PORT), '--no-open'], {
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
     this.child = child;
-    for (const stream of [child.stdout, child.stderr]) stream?.on('data', (text: Buffer) => (this.said += text.toString()));
+    for (const stream of [child.stdout, child.stderr])
+      stream?.on('data', (text: Buffer) => (this.said += text.toString()));
     for (let attempt = 0; attempt < 200; attempt++) {
       if (child.exitCode !== null) throw new Error(`the program ended: ${this.said}`);
       const answer = await fetch(`http://127.0.0.1:${PROGRAM_PORT}/`).catch(() => undefined);

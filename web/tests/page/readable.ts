@@ -6,9 +6,14 @@ export async function unnamedControls(page: Page): Promise<string[]> {
     [...document.querySelectorAll<HTMLElement>('button, input, select, canvas[tabindex], [role=radio]')]
       .filter((control) => control.checkVisibility({ visibilityProperty: true }))
       .filter((control) => {
-        const labels = control instanceof HTMLInputElement || control instanceof HTMLSelectElement ? control.labels : null;
+        const labels =
+          control instanceof HTMLInputElement || control instanceof HTMLSelectElement ? control.labels : null;
         const own = control instanceof HTMLSelectElement ? '' : control.textContent;
-        return ![control.getAttribute('aria-label'), own, ...[...(labels ?? [])].map((label) => label.textContent)].some((name) => name?.trim());
+        return ![
+          control.getAttribute('aria-label'),
+          own,
+          ...[...(labels ?? [])].map((label) => label.textContent),
+        ].some((name) => name?.trim());
       })
       .map((control) => control.outerHTML.slice(0, 120)),
   );
@@ -31,12 +36,11 @@ export async function lowContrast(page: Page): Promise<string[]> {
       const [red, green, blue, alpha] = context.getImageData(0, 0, 1, 1).data;
       return [red!, green!, blue!, alpha! / 255];
     };
-    const over = (top: Colour, below: Colour): Colour => [
-      ...([0, 1, 2] as const).map((part) => top[part] * top[3] + below[part] * (1 - top[3])),
-      1,
-    ] as Colour;
+    const over = (top: Colour, below: Colour): Colour =>
+      [...([0, 1, 2] as const).map((part) => top[part] * top[3] + below[part] * (1 - top[3])), 1] as Colour;
     const luminance = (colour: Colour) => {
-      const linear = (part: number) => (part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4);
+      const linear = (part: number) =>
+        part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4;
       return 0.2126 * linear(colour[0]) + 0.7152 * linear(colour[1]) + 0.0722 * linear(colour[2]);
     };
     const ground = parse(getComputedStyle(document.documentElement).getPropertyValue('--ground-bottom'));
@@ -53,11 +57,15 @@ export async function lowContrast(page: Page): Promise<string[]> {
     while (walker.nextNode()) {
       const parent = walker.currentNode.parentElement;
       const text = walker.currentNode.textContent?.trim();
-      if (!parent || !text || !parent.checkVisibility({ visibilityProperty: true, opacityProperty: true })) continue;
+      if (!parent || !text || !parent.checkVisibility({ visibilityProperty: true, opacityProperty: true }))
+        continue;
       if (parent.closest(':disabled, option, script, noscript, .unseen')) continue;
       const back = behind(parent);
       const front = over(parse(getComputedStyle(parent).color), back);
-      const [darker, lighter] = [luminance(front), luminance(back)].sort((one, other) => one - other) as [number, number];
+      const [darker, lighter] = [luminance(front), luminance(back)].sort((one, other) => one - other) as [
+        number,
+        number,
+      ];
       const ratio = (lighter + 0.05) / (darker + 0.05);
       if (ratio < 4.5) poor.push(`${ratio.toFixed(2)}: ${text.slice(0, 40)}`);
     }

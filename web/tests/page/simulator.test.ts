@@ -12,17 +12,26 @@ const state = (page: Page): Promise<PageState> => page.evaluate(() => window.vis
 
 /** A number of the page's state as it is now. */
 const number = (page: Page, read: (state: PageState) => number): Promise<number> =>
-  page.evaluate((source) => (new Function('state', `return (${source})(state)`) as (state: PageState) => number)(window.viscera.state()), read.toString());
+  page.evaluate(
+    (source) =>
+      (new Function('state', `return (${source})(state)`) as (state: PageState) => number)(
+        window.viscera.state(),
+      ),
+    read.toString(),
+  );
 
 const time = (page: Page) => number(page, ({ frame }) => frame?.time ?? 0);
 const steps = (page: Page) => number(page, ({ frame }) => frame?.steps ?? 0);
 const sag = (page: Page) => number(page, ({ frame }) => frame?.observables?.[0]?.largestDisplacement ?? 0);
 
 /** Where a point of the scene is on the page. */
-const place = (page: Page, point: [number, number, number]) => page.evaluate((x) => window.viscera.state().project(x), point);
+const place = (page: Page, point: [number, number, number]) =>
+  page.evaluate((x) => window.viscera.state().project(x), point);
 
 async function openText(page: Page, name: string, text: string): Promise<void> {
-  await page.locator('input[type=file]').setInputFiles({ name, mimeType: 'application/toml', buffer: Buffer.from(text) });
+  await page
+    .locator('input[type=file]')
+    .setInputFiles({ name, mimeType: 'application/toml', buffer: Buffer.from(text) });
 }
 
 async function openBlock(page: Page): Promise<void> {
@@ -36,7 +45,10 @@ async function openBlock(page: Page): Promise<void> {
 for (const engine of ['native', 'wasm'] as const) {
   test.describe(engine, () => {
     test.describe.configure({ mode: 'serial' });
-    test.skip(engine === 'wasm' && !existsSync(WASM), 'the engine was not built as WebAssembly: npm run build:engine');
+    test.skip(
+      engine === 'wasm' && !existsSync(WASM),
+      'the engine was not built as WebAssembly: npm run build:engine',
+    );
 
     const program = new Program();
     const complaints: string[] = [];
@@ -47,7 +59,8 @@ for (const engine of ['native', 'wasm'] as const) {
       page = await browser.newPage({ viewport: { width: 800, height: 500 }, acceptDownloads: true });
       page.on('console', (message) => {
         // The browser itself reports a refused connection, which one of the tests brings about.
-        if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text())) complaints.push(message.text());
+        if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text()))
+          complaints.push(message.text());
       });
       page.on('pageerror', (error) => complaints.push(String(error)));
       await page.goto(`/?engine=${engine}`);
@@ -74,7 +87,8 @@ for (const engine of ['native', 'wasm'] as const) {
         sheet.drawImage(await createImageBitmap(canvas), 0, 0, 64, 40);
         const { data } = sheet.getImageData(0, 0, 64, 40);
         let count = 0;
-        for (let pixel = 0; pixel < data.length; pixel += 4) if (data[pixel + 3]! > 128 && data[pixel]! > 1.5 * data[pixel + 1]!) count += 1;
+        for (let pixel = 0; pixel < data.length; pixel += 4)
+          if (data[pixel + 3]! > 128 && data[pixel]! > 1.5 * data[pixel + 1]!) count += 1;
         return count / (64 * 40);
       });
       expect(red).toBeGreaterThan(0.05);
@@ -97,7 +111,9 @@ for (const engine of ['native', 'wasm'] as const) {
       await expect.poll(async () => (await state(page)).frame?.instruments[0]?.holds).toBe(true);
       await page.mouse.move(grip.x + 20, grip.y - 60, { steps: 8 });
       await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.01);
-      const force = await number(page, ({ frame }) => Math.hypot(...(frame?.instruments[0]?.force ?? [0, 0, 0])));
+      const force = await number(page, ({ frame }) =>
+        Math.hypot(...(frame?.instruments[0]?.force ?? [0, 0, 0])),
+      );
       expect(force).toBeGreaterThan(0);
       await page.screenshot({ path: `tests/artefacts/${engine}-grasped.png` });
       await page.mouse.up();
@@ -151,7 +167,9 @@ for (const engine of ['native', 'wasm'] as const) {
       const spot = await place(page, [0.05, 0.03, 0.04]);
       await page.mouse.move(spot.x, spot.y);
       await page.mouse.down();
-      await expect.poll(() => number(page, ({ frame }) => frame?.observables?.[0]?.removed ?? 0), { timeout: 30_000 }).toBeGreaterThan(0);
+      await expect
+        .poll(() => number(page, ({ frame }) => frame?.observables?.[0]?.removed ?? 0), { timeout: 30_000 })
+        .toBeGreaterThan(0);
       await page.mouse.move(spot.x, spot.y - 25, { steps: 5 });
       await page.waitForTimeout(500);
       await page.mouse.up();
@@ -191,7 +209,13 @@ for (const engine of ['native', 'wasm'] as const) {
     });
 
     test('a wrong mesh and a wrong scene say what is wrong, and the scene goes on', async () => {
-      await page.locator('input[type=file]').setInputFiles({ name: 'broken.stl', mimeType: 'model/stl', buffer: Buffer.from('solid nothing\nfacet') });
+      await page
+        .locator('input[type=file]')
+        .setInputFiles({
+          name: 'broken.stl',
+          mimeType: 'model/stl',
+          buffer: Buffer.from('solid nothing\nfacet'),
+        });
       await expect(page.locator('.notice.error').first()).toBeVisible();
       await openText(page, 'own.toml', 'title = "x"\n[body.a]\nyoungs = 1\n');
       await expect(page.locator('.notice.error pre').first()).toContainText('own.toml');

@@ -8,9 +8,9 @@ import { lowContrast, unnamedControls } from './readable';
 const DESK = { width: 1280, height: 720 };
 const TABLET = { width: 1024, height: 768 };
 
-async function begin(page: Page, session: StandIn, address = '/?engine=native'): Promise<void> {
+async function begin(page: Page, session: StandIn, quality = 'least'): Promise<void> {
   await page.routeWebSocket('**/ws', session.serve);
-  await page.goto(address);
+  await page.goto(`/?engine=native&quality=${quality}`);
   await expect(page.getByRole('radio', { name: 'Grasper' })).toBeVisible();
   await drawn(page);
 }
@@ -57,7 +57,10 @@ test.describe('on a tablet', () => {
     const small = await page.evaluate(() =>
       [...document.querySelectorAll<HTMLElement>('button, select, summary')]
         .filter((control) => control.offsetParent !== null)
-        .map((control) => ({ name: control.title || control.textContent, box: control.getBoundingClientRect() }))
+        .map((control) => ({
+          name: control.title || control.textContent,
+          box: control.getBoundingClientRect(),
+        }))
         .filter(({ box }) => box.width < 24 || box.height < 24 || box.right > innerWidth || box.left < 0)
         .map(({ name }) => name),
     );
@@ -72,7 +75,7 @@ test.describe('on a tablet', () => {
 test('colours come with a legend, the ghost as lines, and a cut with its rim', async ({ page }) => {
   await page.setViewportSize(DESK);
   const session = new StandIn();
-  await begin(page, session);
+  await begin(page, session, 'full');
   await page.getByRole('button', { name: 'Understood' }).click();
   await page.getByLabel('Colours').selectOption('stress');
   await expect(page.locator('.legend')).toContainText('Von Mises stress [kPa]');
@@ -104,8 +107,16 @@ test('a change is said in SI units, and a refusal stands beside its control', as
   await young.fill('five');
   await young.press('Enter');
   await expect(page.getByText('This is no number.')).toBeVisible();
-  session.say({ type: 'refusal', command: 'set', key: 'liver.law.poisson', reason: 'A Poisson ratio lies below 0.5.', help: '' });
-  await expect(page.locator('[data-key="liver.law.poisson"]')).toContainText('A Poisson ratio lies below 0.5.');
+  session.say({
+    type: 'refusal',
+    command: 'set',
+    key: 'liver.law.poisson',
+    reason: 'A Poisson ratio lies below 0.5.',
+    help: '',
+  });
+  await expect(page.locator('[data-key="liver.law.poisson"]')).toContainText(
+    'A Poisson ratio lies below 0.5.',
+  );
   await expect(page.locator('[data-key="liver.density"]')).toContainText('restarts');
 });
 
@@ -113,7 +124,13 @@ test('a refused scene shows the line that is wrong', async ({ page }) => {
   const session = new StandIn();
   await begin(page, session);
   const excerpt = { source: 'own.toml', line: 12, column: 3, text: '  youngs = "5 kPa"', length: 6 };
-  session.say({ type: 'refusal', command: 'open-text', reason: 'unknown key `youngs`', help: 'did you mean `young`?', excerpt });
+  session.say({
+    type: 'refusal',
+    command: 'open-text',
+    reason: 'unknown key `youngs`',
+    help: 'did you mean `young`?',
+    excerpt,
+  });
   const notice = page.getByRole('alert').filter({ hasText: 'unknown key' });
   await expect(notice).toContainText('own.toml:12');
   await expect(notice.locator('mark')).toHaveText('youngs');

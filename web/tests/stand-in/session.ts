@@ -26,7 +26,8 @@ export class StandIn {
 
   constructor() {
     for (const { instrument, kind } of this.instruments) {
-      const tip: [number, number, number] = kind === 'grasper' ? [0.1, 0.1, 0.06] : kind === 'cautery' ? [-0.01, 0.1, 0.05] : [-0.12, 0.1, 0.07];
+      const tip: [number, number, number] =
+        kind === 'grasper' ? [0.1, 0.1, 0.06] : kind === 'cautery' ? [-0.01, 0.1, 0.05] : [-0.12, 0.1, 0.07];
       const direction: [number, number, number] = [kind === 'probe' ? 0.5 : -0.35, -1, -0.5];
       this.tools.set(instrument, {
         instrument,
@@ -99,7 +100,16 @@ export class StandIn {
       case 'move-instrument': {
         const tool = this.tools.get(command.instrument);
         const { tip, direction, roll, trigger, stamp } = command;
-        if (tool) Object.assign(tool, { tip, direction, roll, trigger, stamp, opening: 0.7 * (1 - trigger), active: trigger > 0.5 });
+        if (tool)
+          Object.assign(tool, {
+            tip,
+            direction,
+            roll,
+            trigger,
+            stamp,
+            opening: 0.7 * (1 - trigger),
+            active: trigger > 0.5,
+          });
         break;
       }
     }
@@ -108,7 +118,15 @@ export class StandIn {
 
   private greet(): void {
     const session = this.sessionNumber;
-    this.say({ type: 'welcome', version: 1, program: 'stand-in', engine: 'native', session, role: this.role, threads: 2 });
+    this.say({
+      type: 'welcome',
+      version: 1,
+      program: 'stand-in',
+      engine: 'native',
+      session,
+      role: this.role,
+      threads: 2,
+    });
     this.say({ type: 'catalogue', ...catalogue });
     this.sayScene();
     this.saySurface();
@@ -116,7 +134,14 @@ export class StandIn {
   }
 
   private sayScene(): void {
-    const body = { name: 'liver', cells: 1893, nodes: 521, vertices: this.blob.rest.length / 3, law: 'st-venant-kirchhoff', model: 'total-lagrangian' };
+    const body = {
+      name: 'liver',
+      cells: 1893,
+      nodes: 521,
+      vertices: this.blob.rest.length / 3,
+      law: 'st-venant-kirchhoff',
+      model: 'total-lagrangian',
+    };
     this.say({
       type: 'scene',
       epoch: this.ghost ? 2 : 1,
@@ -169,11 +194,17 @@ export class StandIn {
         pull += tool.trigger * Math.exp(-((distance / 0.035) ** 2));
       }
       positions[3 * vertex + 1]! += 0.03 * pull + 0.002 * Math.sin(6 * place[0] * 10 + time);
-      scalars[vertex] = this.colouring === 'volume' ? 0.1 * Math.sin(30 * place[0]) : Math.abs(place[0]) * 4e4 * (1 + pull);
+      scalars[vertex] =
+        this.colouring === 'volume' ? 0.1 * Math.sin(30 * place[0]) : Math.abs(place[0]) * 4e4 * (1 + pull);
       seared[vertex] = this.cutAway > 0 ? Math.exp(-(((place[0] - 0.03) / 0.012) ** 2)) : 0;
     }
     const epoch = this.cutAway > 0 ? 1 : 0;
-    const body = { epoch, positions: bytesOf(positions), seared: bytesOf(seared), ...(this.colouring === 'none' ? {} : { scalars: bytesOf(scalars) }) };
+    const body = {
+      epoch,
+      positions: bytesOf(positions),
+      seared: bytesOf(seared),
+      ...(this.colouring === 'none' ? {} : { scalars: bytesOf(scalars) }),
+    };
     const observables = {
       kinetic: 1e-3 * Math.abs(Math.sin(time)),
       elastic: 0.02 + 0.01 * Math.sin(0.3 * time),

@@ -23,7 +23,10 @@ test.each([
   ['nothing', new Uint8Array()],
   ['no map', encode([1, 2])],
   ['no type', encode({ kind: 'frame' })],
-  ['an array that is cut off', encode({ type: 'frame', bodies: [{ epoch: 0, positions: new Uint8Array(7) }] })],
+  [
+    'an array that is cut off',
+    encode({ type: 'frame', bodies: [{ epoch: 0, positions: new Uint8Array(7) }] }),
+  ],
   ['positions that are numbers', encode({ type: 'frame', bodies: [{ epoch: 0, positions: [1, 2, 3] }] })],
   ['bodies that are none', encode({ type: 'frame', bodies: 7 })],
 ])('%s is refused', (_, wrong) => {
@@ -31,6 +34,22 @@ test.each([
 });
 
 test('keys of a command that are not given are not said', () => {
-  const said = decode(encodeCommand({ type: 'move-instrument', instrument: 1, tip: [0, 1, 2], direction: [0, 0, 1], roll: 0, trigger: 1 }));
-  expect(said).toEqual({ type: 'move-instrument', instrument: 1, tip: [0, 1, 2], direction: [0, 0, 1], roll: 0, trigger: 1 });
+  const said = decode(
+    encodeCommand({
+      type: 'move-instrument',
+      instrument: 1,
+      tip: [0, 1, 2],
+      direction: [0, 0, 1],
+      roll: 0,
+      trigger: 1,
+    }),
+  );
+  expect(said).toEqual({
+    type: 'move-instrument',
+    instrument: 1,
+    tip: [0, 1, 2],
+    direction: [0, 0, 1],
+    roll: 0,
+    trigger: 1,
+  });
 });

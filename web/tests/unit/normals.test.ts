@@ -27,7 +27,10 @@ test('normals of a sphere point outward', () => {
   smoothNormals(sphere, triangles, normals);
   const used = new Set(triangles);
   for (const vertex of used) {
-    const cosine = [0, 1, 2].reduce((sum, axis) => sum + normals[3 * vertex + axis]! * sphere[3 * vertex + axis]!, 0);
+    const cosine = [0, 1, 2].reduce(
+      (sum, axis) => sum + normals[3 * vertex + axis]! * sphere[3 * vertex + axis]!,
+      0,
+    );
     // Half the angle between neighbouring faces of a coarse sphere, at most.
     expect(cosine).toBeGreaterThan(0.95);
   }

@@ -58,7 +58,11 @@ test('the span of a chart is round and holds all values', () => {
 test('a full series forgets its oldest values first', () => {
   const series = new Series(3);
   for (const time of [1, 2, 3, 4]) series.push(time, 10 * time);
-  expect([...series.after(0)]).toEqual([[2, 20], [3, 30], [4, 40]]);
+  expect([...series.after(0)]).toEqual([
+    [2, 20],
+    [3, 30],
+    [4, 40],
+  ]);
   expect([...series.after(3.5)]).toEqual([[4, 40]]);
   expect(series.last).toBe(40);
 });
@@ -66,7 +70,8 @@ test('a full series forgets its oldest values first', () => {
 test('brightness grows all along the sequential map, so that it can be read without colours', () => {
   // Relative luminance after WCAG 2.2.
   const luminance = ([red, green, blue]: [number, number, number]) => {
-    const linear = (part: number) => (part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4);
+    const linear = (part: number) =>
+      part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4;
     return 0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue);
   };
   let before = -1;
