@@ -10,6 +10,8 @@ export interface PageState {
   session: number | undefined;
   scene: Scene | undefined;
   frame: Frame | undefined;
+  /** Pictures drawn so far, and in the last second. */
+  drawn: number;
   drawnPerSecond: number;
   quality: string;
   chosen: number | undefined;
@@ -36,6 +38,7 @@ export function exposeState(session: SessionClient, view: View, tools: Tools): v
       session: session.welcome?.session,
       scene: session.scene,
       frame: session.frame,
+      drawn: view.drawn,
       drawnPerSecond: view.drawnPerSecond,
       quality: view.qualityName,
       chosen: tools.chosen?.instrument,

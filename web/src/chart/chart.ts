@@ -15,7 +15,7 @@ export interface Curve {
 export class Chart {
   readonly node: HTMLElement;
   private readonly canvas = element('canvas', { attributes: { 'aria-hidden': 'true' } });
-  private readonly value = element('output', { className: 'value' });
+  private readonly value = element('span', { className: 'value' });
   private readonly top = element('span', { className: 'limit' });
   private readonly bottom = element('span', { className: 'limit' });
   private readonly unit: string;
@@ -31,7 +31,6 @@ export class Chart {
       curves.length > 1
         ? curves.map(({ name }, index) => element('span', { className: `key key-${index + 1}` }, name))
         : [];
-    this.value.setAttribute('aria-label', title);
     this.node = element(
       'figure',
       { className: 'chart' },

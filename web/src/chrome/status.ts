@@ -26,7 +26,7 @@ export function statusLine(session: SessionClient, view: View): HTMLElement {
     say(tape, shown ?? '');
     tape.classList.toggle('departs', frame.replay?.agrees === false);
   });
-  setInterval(() => say(pictures, `${view.drawnPerSecond} pictures/s`), 500);
+  setInterval(() => say(pictures, `${shownNumber(view.drawnPerSecond, 2)} pictures/s`), 500);
   return element('div', { className: 'status' }, time, pace, cells, pictures, tape);
 }
 

@@ -1,5 +1,6 @@
 import * as THREE from 'three';
 import type { FrameInstrument, SceneInstrument } from '../engine/messages';
+import { orientation } from './orientation';
 
 const STEEL = new THREE.MeshStandardMaterial({ color: 0xc9cfd2, metalness: 0.85, roughness: 0.26 });
 const SLEEVE = new THREE.MeshStandardMaterial({ color: 0x1d2326, metalness: 0.1, roughness: 0.42 });
@@ -53,11 +54,7 @@ export class DrawnInstrument {
 
   setFrame(frame: FrameInstrument): void {
     this.group.position.set(...frame.tip);
-    const direction = new THREE.Vector3(...frame.direction);
-    if (direction.lengthSq() > 0) direction.normalize();
-    else direction.set(0, 0, 1);
-    this.group.quaternion.setFromUnitVectors(FORWARD, direction);
-    this.group.rotateOnAxis(FORWARD, frame.roll);
+    this.group.quaternion.copy(orientation(new THREE.Vector3(...frame.direction), frame.roll));
     this.jaws.forEach((jaw, index) => (jaw.rotation.x = (index === 0 ? -0.5 : 0.5) * frame.opening));
     this.glow.emissiveIntensity = frame.active && this.description.hook ? 1.6 : 0;
     this.trocar?.lookAt(this.group.position);
@@ -136,8 +133,6 @@ export class DrawnInstrument {
     return neck;
   }
 }
-
-const FORWARD = new THREE.Vector3(0, 0, 1);
 
 function rod(radius: number, from: number, to: number, material: THREE.Material): THREE.Mesh {
   const mesh = new THREE.Mesh(

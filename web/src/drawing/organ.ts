@@ -49,6 +49,8 @@ export class Organ {
     geometry.setAttribute('rest', new THREE.BufferAttribute(rest, 3));
     geometry.setAttribute('value', changing(new Float32Array(count), 1));
     geometry.setAttribute('mark', changing(marks, 2));
+    // Rays are tested against this ball first. The organ moves in every frame, so that no smaller one would stay right.
+    geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity);
     geometry.setIndex(new THREE.BufferAttribute(drawn.triangles, 1));
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;

@@ -27,7 +27,9 @@ export class Stage {
 
   setScene(scene: Scene, coat: boolean): void {
     this.coat = coat;
-    if (scene.epoch !== this.scene?.epoch || scene.name !== this.scene.name) this.replaceBodies(scene);
+    // A restarted program counts its epochs anew: what the bodies are has to agree as well.
+    const consists = (of: Scene | undefined) => JSON.stringify([of?.epoch, of?.name, of?.bodies]);
+    if (consists(scene) !== consists(this.scene)) this.replaceBodies(scene);
     this.scene = scene;
     this.replaceInstruments(scene);
   }

@@ -20,7 +20,8 @@ export class View {
   readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 10);
   readonly controls: OrbitControls;
   readonly stage = new Stage();
-  /** Pictures drawn in the last second. */
+  /** Pictures drawn since the page began, and in the last second; below one where a picture takes longer than that. */
+  drawn = 0;
   drawnPerSecond = 0;
 
   private readonly renderer: THREE.WebGLRenderer;
@@ -65,12 +66,13 @@ export class View {
     this.changed = true;
   }
 
-  /** Takes another scene; the camera goes home only when it is another one by name. */
+  /** Takes another scene; the camera goes home only when it is another one. */
   setScene(scene: Scene): void {
     this.home = scene;
     this.stage.setScene(scene, this.quality.quality.coat);
-    if (scene.name !== this.shownScene) {
-      this.shownScene = scene.name;
+    const shown = JSON.stringify([scene.name, scene.title, scene.centre, scene.radius]);
+    if (shown !== this.shownScene) {
+      this.shownScene = shown;
       this.goHome();
     }
     this.invalidate();
@@ -210,14 +212,16 @@ export class View {
   private turn(now: number): void {
     requestAnimationFrame((next) => this.turn(next));
     this.controls.update();
-    this.drawnTimes = this.drawnTimes.filter((time) => now - time < 1000);
-    this.drawnPerSecond = this.drawnTimes.length;
+    const latest = this.drawnTimes.at(-1) ?? now;
+    this.drawnTimes = this.drawnTimes.filter((time) => now - time < 1000 || time === latest);
+    this.drawnPerSecond = now - latest < 1000 ? this.drawnTimes.length : 1000 / (now - latest);
     if (!this.changed) {
       this.lastDrawn = 0;
       return;
     }
     this.changed = false;
     this.draw();
+    this.drawn += 1;
     this.drawnTimes.push(now);
     // Only pictures that follow each other tell how long one takes; after a rest there is nothing to compare with.
     if (this.lastDrawn > 0 && this.quality.observe(now - this.lastDrawn)) this.apply(this.quality.quality);

@@ -6,6 +6,9 @@ import type { Tools } from './tools';
 const DEPTH_PER_WHEEL = 0.00025;
 const DEPTH_PER_PIXEL = 0.0012;
 
+/** Milliseconds between two looks at what the mouse passes over. */
+const HOVER_PAUSE = 60;
+
 interface Drag {
   pointer: number;
   /** From the point under the pointer to the tip [m], kept while dragging. */
@@ -23,6 +26,8 @@ interface Drag {
  */
 export class PointerHandling {
   private drag: Drag | undefined;
+  private readonly fingers = new Set<number>();
+  private lastHover = 0;
   private readonly view: View;
   private readonly tools: Tools;
   private readonly onWork: () => void;
@@ -46,10 +51,13 @@ export class PointerHandling {
   }
 
   private down(event: PointerEvent): void {
+    if (event.pointerType === 'touch') this.fingers.add(event.pointerId);
     if (this.drag) {
       if (event.pointerType === 'touch') this.drag.second = { pointer: event.pointerId, y: event.clientY };
       return;
     }
+    // A second finger on a turning view zooms it, also where it lands on tissue.
+    if (this.fingers.size > 1) return;
     if (event.button !== 0 || event.ctrlKey || event.metaKey || event.shiftKey || !this.tools.mayDrive)
       return;
     const hit = this.view.pick(event.clientX, event.clientY);
@@ -90,6 +98,7 @@ export class PointerHandling {
   }
 
   private up(event: PointerEvent): void {
+    this.fingers.delete(event.pointerId);
     const drag = this.drag;
     if (drag?.second?.pointer === event.pointerId) {
       delete drag.second;
@@ -121,7 +130,13 @@ export class PointerHandling {
   }
 
   private hover(event: PointerEvent): void {
-    if (event.pointerType === 'touch' || event.buttons !== 0) return;
+    if (
+      event.pointerType === 'touch' ||
+      event.buttons !== 0 ||
+      event.timeStamp - this.lastHover < HOVER_PAUSE
+    )
+      return;
+    this.lastHover = event.timeStamp;
     const hit = this.tools.mayDrive ? this.view.pick(event.clientX, event.clientY) : undefined;
     this.view.canvas.dataset['cursor'] = hit?.kind ?? '';
   }

@@ -8,6 +8,8 @@ const TURN = 16;
 /** How fast a tool goes, and how far it backs out, in radii of the scene (per second). */
 const SPEED = 7;
 const CLEARANCE = 0.22;
+/** Farther from where the hand left it [radii of the scene], a tool is no longer in hand. */
+const FAR = 0.6;
 /** Latencies that are kept for the numbers. */
 const KEPT = 200;
 
@@ -38,6 +40,7 @@ export class Tools {
     session.on('scene', () => this.follow());
     session.on('frame', (frame) => {
       const state = frame.instruments.find((instrument) => instrument.instrument === this.chosenNumber);
+      this.lookAfter(state, frame.replay !== undefined);
       if (state?.stamp !== undefined && state.stamp !== this.stamp) {
         this.stamp = state.stamp;
         this.latencies.push(performance.now() - state.stamp);
@@ -168,6 +171,14 @@ export class Tools {
           ? instrument.shaft.radius
           : 0.14 * radius;
     return point.clone().addScaledVector(direction.clone().normalize(), depth);
+  }
+
+  /** Takes the hand off a tool that was put elsewhere: by a replay, a kept state, another scene. */
+  private lookAfter(state: FrameInstrument | undefined, replaying: boolean): void {
+    const hand = this.hand;
+    if (!hand?.arrived || !state) return;
+    const away = hand.pose.tip.distanceTo(new Vector3(...state.tip));
+    if (replaying || away > FAR * (this.session.scene?.radius ?? 1)) this.drop();
   }
 
   /** The hand on the chosen instrument, which takes it where it is. */

