@@ -11,8 +11,9 @@ export const PROGRAM_PORT = 4187;
 export default defineConfig({
   testDir: 'tests/page',
   outputDir: 'tests/artefacts/failures',
-  timeout: 60_000,
-  expect: { timeout: 15_000 },
+  // Limits, not expectations: on an idle machine nothing takes a quarter of that.
+  timeout: 180_000,
+  expect: { timeout: 45_000 },
   // One picture at a time: two processes that draw in software on two cores only make each other slow.
   workers: 1,
   reporter: [['list']],

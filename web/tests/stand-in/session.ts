@@ -130,7 +130,7 @@ export class StandIn {
     this.say({ type: 'catalogue', ...catalogue });
     this.sayScene();
     this.saySurface();
-    this.timer = setInterval(() => this.running && this.sayFrame(), 100);
+    this.timer = setInterval(() => this.running && this.sayFrame(), 250);
   }
 
   private sayScene(): void {
