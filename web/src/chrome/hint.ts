@@ -1,0 +1,63 @@
+import { element } from '../dom';
+import type { Manner } from '../handling/tools';
+import { icon, type IconName } from './icons';
+import { remember, remembered } from './theme';
+
+const KEY = 'viscera.hint';
+
+const WORK: Record<Manner | 'none', readonly [icon: IconName, text: string]> = {
+  grasp: ['grasp', 'Press on the tissue to grasp it, and drag to pull.'],
+  burn: ['burn', 'Press on the tissue to burn it, and drag along the cut.'],
+  none: ['add', 'Bring in a tool at the left, or press on the tissue to get one.'],
+  push: ['push', 'Press on the tissue to push it in, and drag to slide.'],
+};
+
+/** How to begin, for those who see the page for the first time. Gone for good once it was read or done. */
+export class Hint {
+  readonly node = element('section', {
+    className: 'hint',
+    hidden: true,
+    attributes: { 'aria-label': 'How to begin' },
+  });
+  private shown: Manner | 'none' | undefined;
+
+  /** `manner`: what the tool in hand does; `none` while there is none. */
+  show(manner: Manner | 'none', touch = matchMedia('(pointer: coarse)').matches): void {
+    if (manner === this.shown || remembered(KEY) !== null) return;
+    this.shown = manner;
+    const line = (name: IconName, text: string) => element('li', {}, icon(name), element('span', {}, text));
+    const close = element('button', { type: 'button', className: 'text-button' }, 'Understood');
+    close.addEventListener('click', () => this.dismiss());
+    this.node.replaceChildren(
+      element(
+        'ul',
+        {},
+        line(...WORK[manner]),
+        line(
+          'depth',
+          touch
+            ? 'A second finger, or the strip at the left, moves it in depth.'
+            : 'While pressing, the wheel moves it in depth.',
+        ),
+        line(
+          'reset',
+          touch
+            ? 'Beside the tissue, a finger turns the view; two move and zoom it.'
+            : 'Beside the tissue, or with the right button, you turn the view; the wheel zooms.',
+        ),
+      ),
+      element(
+        'div',
+        { className: 'hint-foot' },
+        element('span', { className: 'note' }, touch ? '' : 'H shows all keys.'),
+        close,
+      ),
+    );
+    this.node.hidden = false;
+  }
+
+  dismiss(): void {
+    this.node.hidden = true;
+    remember(KEY, 'read');
+  }
+}

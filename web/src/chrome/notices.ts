@@ -1,0 +1,67 @@
+import type { Notice } from '../engine/messages';
+import { element } from '../dom';
+import { iconButton } from './button';
+
+/** Seconds that a notice stays; errors stay until they are closed. */
+const STAY = { info: 7, warning: 12, error: Infinity } as const;
+const MOST = 4;
+
+/** What the engine has to say, at the top of the picture: newest first, and the same thing once. */
+export class Notices {
+  readonly node = element('div', {
+    className: 'notices',
+    attributes: { role: 'log', 'aria-live': 'polite', 'aria-label': 'Notices' },
+  });
+
+  show(
+    level: Notice['level'],
+    text: string,
+    help = '',
+    excerpt?: { source: string; line: number; text: string; column: number; length: number },
+  ): void {
+    for (const other of this.node.children) {
+      if (other instanceof HTMLElement && other.dataset['text'] === text) other.remove();
+    }
+    const close = iconButton('remove', 'Close this notice', () => notice.remove());
+    const notice = element(
+      'div',
+      { className: `notice ${level}`, data: { text } },
+      element(
+        'div',
+        { className: 'notice-text' },
+        element('p', {}, text),
+        help ? element('p', { className: 'note' }, help) : undefined,
+        excerpt ? excerptOf(excerpt) : undefined,
+      ),
+      close,
+    );
+    if (level === 'error') notice.setAttribute('role', 'alert');
+    this.node.prepend(notice);
+    while (this.node.children.length > MOST) this.node.lastElementChild?.remove();
+    if (Number.isFinite(STAY[level])) setTimeout(() => notice.remove(), 1000 * STAY[level]);
+  }
+}
+
+/** The line of a text in which something is wrong, with the place marked. */
+function excerptOf({
+  source,
+  line,
+  text,
+  column,
+  length,
+}: {
+  source: string;
+  line: number;
+  text: string;
+  column: number;
+  length: number;
+}): HTMLElement {
+  const begin = Math.max(0, column - 1);
+  return element(
+    'pre',
+    {},
+    `${source}:${line}\n${text.slice(0, begin)}`,
+    element('mark', {}, text.slice(begin, begin + Math.max(1, length))),
+    text.slice(begin + Math.max(1, length)),
+  );
+}

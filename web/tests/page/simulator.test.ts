@@ -1,0 +1,241 @@
+import { existsSync } from 'node:fs';
+import { expect, test, type Page } from '@playwright/test';
+import type { PageState } from '../../src/hook';
+import { Program } from './program';
+import { BLOCK } from './scenes';
+
+/** The page with a real session, for both engines: the program, and WebAssembly in a worker. Each uses one page throughout. */
+
+const WASM = 'src/engine/generated/viscera_web_bg.wasm';
+
+const state = (page: Page): Promise<PageState> => page.evaluate(() => window.viscera.state() as PageState);
+
+/** A number of the page's state as it is now. */
+const number = (page: Page, read: (state: PageState) => number): Promise<number> =>
+  page.evaluate(
+    (source) =>
+      (new Function('state', `return (${source})(state)`) as (state: PageState) => number)(
+        window.viscera.state(),
+      ),
+    read.toString(),
+  );
+
+const time = (page: Page) => number(page, ({ frame }) => frame?.time ?? 0);
+const steps = (page: Page) => number(page, ({ frame }) => frame?.steps ?? 0);
+const sag = (page: Page) => number(page, ({ frame }) => frame?.observables?.[0]?.largestDisplacement ?? 0);
+
+/** Where a point of the scene is on the page. */
+const place = (page: Page, point: [number, number, number]) =>
+  page.evaluate((x) => window.viscera.state().project(x), point);
+
+async function openText(page: Page, name: string, text: string): Promise<void> {
+  await page
+    .locator('input[type=file]')
+    .setInputFiles({ name, mimeType: 'application/toml', buffer: Buffer.from(text) });
+}
+
+async function openBlock(page: Page): Promise<void> {
+  const before = await number(page, ({ scene }) => scene?.epoch ?? -1);
+  await openText(page, 'block.toml', BLOCK);
+  await expect.poll(() => number(page, ({ scene }) => scene?.epoch ?? -1)).toBeGreaterThan(before);
+  await expect.poll(async () => (await state(page)).scene?.title).toBe('A block');
+  await expect.poll(() => time(page)).toBeGreaterThan(0.1);
+}
+
+for (const engine of ['native', 'wasm'] as const) {
+  test.describe(engine, () => {
+    test.describe.configure({ mode: 'serial' });
+    test.skip(
+      engine === 'wasm' && !existsSync(WASM),
+      'the engine was not built as WebAssembly: npm run build:engine',
+    );
+
+    const program = new Program();
+    const complaints: string[] = [];
+    let page: Page;
+
+    test.beforeAll(async ({ browser }) => {
+      if (engine === 'native') await program.start();
+      page = await browser.newPage({ viewport: { width: 800, height: 500 }, acceptDownloads: true });
+      page.on('console', (message) => {
+        // The browser itself reports a refused connection, which one of the tests brings about.
+        if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text()))
+          complaints.push(message.text());
+      });
+      page.on('pageerror', (error) => complaints.push(String(error)));
+      await page.goto(`/?engine=${engine}`);
+      await expect.poll(async () => (await state(page)).frame !== undefined, { timeout: 60_000 }).toBe(true);
+      await page.evaluate(() => localStorage.setItem('viscera.hint', 'read'));
+    });
+
+    test.afterAll(async () => {
+      await page?.close();
+      await program.stop();
+    });
+
+    test('the first scene is there, and its organ is seen', async () => {
+      const { scene } = await state(page);
+      expect(scene?.bodies.length).toBeGreaterThan(0);
+      await expect(page.getByRole('combobox', { name: 'Scene' })).not.toBeEmpty();
+      await page.waitForFunction(() => window.viscera.state().drawn > 2);
+      await page.screenshot({ path: `tests/artefacts/${engine}-first.png` });
+      // Tissue is red; the ground is grey. A good part of the picture's middle has to be tissue.
+      const red = await page.evaluate(async () => {
+        const canvas = document.querySelector<HTMLCanvasElement>('#view')!;
+        await new Promise((resolve) => requestAnimationFrame(resolve));
+        const sheet = new OffscreenCanvas(64, 40).getContext('2d')!;
+        sheet.drawImage(await createImageBitmap(canvas), 0, 0, 64, 40);
+        const { data } = sheet.getImageData(0, 0, 64, 40);
+        let count = 0;
+        for (let pixel = 0; pixel < data.length; pixel += 4)
+          if (data[pixel + 3]! > 128 && data[pixel]! > 1.5 * data[pixel + 1]!) count += 1;
+        return count / (64 * 40);
+      });
+      expect(red).toBeGreaterThan(0.05);
+    });
+
+    test('pictures are counted, and the simulation goes on', async () => {
+      await openBlock(page);
+      const before = await steps(page);
+      await expect.poll(() => steps(page)).toBeGreaterThan(before + 5);
+      await expect(page.locator('.pictures')).toHaveText(/^[\d.]+ pictures\/s$/);
+    });
+
+    test('grasped and dragged, tissue comes along', async () => {
+      await page.getByRole('radio', { name: 'Grasper' }).click();
+      const grip = await place(page, [0.105, 0.03, 0.04]);
+      expect(await page.evaluate(({ x, y }) => window.viscera.state().under(x, y), grip)).toBe('tissue');
+      const before = await sag(page);
+      await page.mouse.move(grip.x, grip.y);
+      await page.mouse.down();
+      await expect.poll(async () => (await state(page)).frame?.instruments[0]?.holds).toBe(true);
+      await page.mouse.move(grip.x + 20, grip.y - 60, { steps: 8 });
+      await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.01);
+      const force = await number(page, ({ frame }) =>
+        Math.hypot(...(frame?.instruments[0]?.force ?? [0, 0, 0])),
+      );
+      expect(force).toBeGreaterThan(0);
+      await page.screenshot({ path: `tests/artefacts/${engine}-grasped.png` });
+      await page.mouse.up();
+      await expect.poll(async () => (await state(page)).frame?.instruments[0]?.holds).toBe(false);
+    });
+
+    test('softer tissue sags more', async () => {
+      await page.getByRole('button', { name: 'Reset (R)' }).click();
+      const young = page.getByRole('textbox', { name: /young/i });
+      await expect.poll(() => time(page)).toBeGreaterThan(0.8);
+      const stiff = await sag(page);
+      await young.fill('1.5');
+      await young.press('Enter');
+      await expect.poll(() => sag(page)).toBeGreaterThan(1.3 * stiff);
+      await young.fill('4');
+      await young.press('Enter');
+      await expect.poll(() => sag(page)).toBeLessThan(1.15 * stiff);
+    });
+
+    test('pause pauses, one step is one step, and on it goes', async () => {
+      await page.getByRole('button', { name: 'Pause (P)' }).click();
+      await expect.poll(async () => (await state(page)).frame?.state).toBe('paused');
+      const still = await steps(page);
+      await page.waitForTimeout(300);
+      expect(await steps(page)).toBe(still);
+      await page.getByRole('button', { name: 'One step' }).click();
+      await expect.poll(() => steps(page)).toBe(still + 1);
+      await page.getByRole('button', { name: 'Go on (P)' }).click();
+      await expect.poll(() => steps(page)).toBeGreaterThan(still + 5);
+    });
+
+    test('what is recorded replays as it was', async () => {
+      await page.getByRole('button', { name: 'Record', exact: true }).click();
+      await expect(page.locator('.tape')).toContainText('recording');
+      const from = await time(page);
+      await page.locator('#view').focus();
+      for (let press = 0; press < 5; press++) await page.keyboard.press('ArrowLeft');
+      await expect.poll(() => time(page)).toBeGreaterThan(from + 0.8);
+      const download = page.waitForEvent('download');
+      await page.getByRole('button', { name: /Stop recording/ }).click();
+      expect((await download).suggestedFilename()).toMatch(/\.viscera-recording$/);
+      await page.getByRole('button', { name: 'Replay' }).click();
+      await page.getByRole('menuitem', { name: /just recorded/ }).click();
+      await expect(page.locator('.tape')).toContainText('agrees');
+      await expect(page.locator('.tape')).toBeHidden();
+      await expect(page.locator('.notice.warning, .notice.error')).toHaveCount(0);
+    });
+
+    test('the cautery takes cells away', async () => {
+      await page.getByRole('radio', { name: 'Cautery' }).click();
+      const spot = await place(page, [0.05, 0.03, 0.04]);
+      await page.mouse.move(spot.x, spot.y);
+      await page.mouse.down();
+      await expect
+        .poll(() => number(page, ({ frame }) => frame?.observables?.[0]?.removed ?? 0), { timeout: 30_000 })
+        .toBeGreaterThan(0);
+      await page.mouse.move(spot.x, spot.y - 25, { steps: 5 });
+      await page.waitForTimeout(500);
+      await page.mouse.up();
+      await expect(page.locator('.status')).toContainText(/\(−\d+\)/);
+      await page.waitForTimeout(800);
+      await page.screenshot({ path: `tests/artefacts/${engine}-cut.png` });
+    });
+
+    test('every colouring of the catalogue has its legend', async () => {
+      const colours = page.getByLabel('Colours');
+      for (const name of ['displacement', 'von-mises', 'volume-change']) {
+        await colours.selectOption(name);
+        await expect.poll(async () => (await state(page)).frame?.colouring.by).toBe(name);
+        await expect(page.locator('.legend')).toBeVisible();
+        const { low, high } = (await state(page)).frame!.colouring;
+        expect(high).toBeGreaterThan(low);
+      }
+      await page.screenshot({ path: `tests/artefacts/${engine}-volume.png` });
+      await colours.selectOption('none');
+      await expect(page.locator('.legend')).toBeHidden();
+    });
+
+    test('measurements, state and scene can be taken away', async () => {
+      for (const [entry, ending] of [
+        ['Measurements', '.csv'],
+        ['The present state', '.vtu'],
+        ['The scene', '.toml'],
+      ] as const) {
+        const download = page.waitForEvent('download');
+        await page.getByRole('button', { name: 'Export' }).click();
+        await page.getByRole('menuitem', { name: entry }).click();
+        expect((await download).suggestedFilename().endsWith(ending)).toBe(true);
+      }
+      const picture = page.waitForEvent('download');
+      await page.getByRole('button', { name: 'Save a picture' }).click();
+      expect((await picture).suggestedFilename()).toBe('viscera.png');
+    });
+
+    test('a wrong mesh and a wrong scene say what is wrong, and the scene goes on', async () => {
+      await page.locator('input[type=file]').setInputFiles({
+        name: 'broken.stl',
+        mimeType: 'model/stl',
+        buffer: Buffer.from('solid nothing\nfacet'),
+      });
+      await expect(page.locator('.notice.error').first()).toBeVisible();
+      await openText(page, 'own.toml', 'title = "x"\n[body.a]\nyoungs = 1\n');
+      await expect(page.locator('.notice.error pre').first()).toContainText('own.toml');
+      await page.screenshot({ path: `tests/artefacts/${engine}-refused.png` });
+      const before = await steps(page);
+      await expect.poll(() => steps(page)).toBeGreaterThan(before);
+    });
+
+    test('a restarted program is found again', async () => {
+      test.skip(engine === 'wasm', 'a worker ends with its page');
+      const before = (await state(page)).session;
+      await program.stop();
+      await expect(page.getByText('Lost the way to the program.')).toBeVisible();
+      await program.start();
+      await expect(page.getByText('The program was restarted; the scene begins anew.')).toBeVisible();
+      expect((await state(page)).session).not.toBe(before);
+      const here = await steps(page);
+      await expect.poll(() => steps(page)).toBeGreaterThan(here);
+    });
+
+    test('nothing complained meanwhile', () => {
+      expect(complaints).toEqual([]);
+    });
+  });
+}
