@@ -1,5 +1,6 @@
 //! What can be typed behind `viscera`.
 
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -15,9 +16,9 @@ Exit codes:
   2    wrong usage or input: a missing file, a mistake in a scene, a folder that cannot be written
   130  interrupted by Ctrl-C; what was computed is kept
 
-Begin with `viscera scenes` and `viscera run liver-resection`.";
+Begin with `viscera` alone, which starts the simulator, or with `viscera scenes` and `viscera run liver-resection`.";
 
-/// Soft tissue in real time, physically: run scenes, check them, make meshes.
+/// Soft tissue in real time, physically: play with organs, run scenes, check them, make meshes.
 #[derive(Debug, Parser)]
 #[command(name = "viscera", version, after_help = EXIT_CODES, disable_help_subcommand = true)]
 pub(crate) struct Arguments {
@@ -27,6 +28,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Start the simulator: an organ in a page of the browser, to be grasped, probed and cut. The same as no command at all.
+    #[command(after_help = EXIT_CODES)]
+    Serve(ServeArguments),
     /// Run a scene: a ParaView series, observables, a summary and pictures go into a folder.
     #[command(after_help = EXIT_CODES)]
     Run(RunArguments),
@@ -109,6 +113,50 @@ pub(crate) struct ProfileArguments {
     /// Measure where the time goes, and try no other settings.
     #[arg(long)]
     pub(crate) no_trials: bool,
+}
+
+/// The port of the simulator: V-I-S-C is 8472 on a telephone.
+const PORT: u16 = 8472;
+
+#[derive(Debug, Args)]
+pub(crate) struct ServeArguments {
+    /// A scene file, or the name of a scene that is built in; by default a liver that nothing happens to.
+    pub(crate) scene: Option<String>,
+    /// The port to listen on; 0 takes any that is free. Without it, any that is free where the usual one is taken.
+    #[arg(long, value_name = "PORT")]
+    pub(crate) port: Option<u16>,
+    /// The address to listen on. Others than 127.0.0.1 let other machines drive the simulation.
+    #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
+    pub(crate) address: IpAddr,
+    /// A name, with or without a port, by which pages may reach the simulator besides addresses and localhost; may be repeated.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) allow_host: Vec<String>,
+    /// Open no browser.
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// Threads to compute on; by default one less than there are cores. Bodies of a few thousand cells gain nothing.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+impl ServeArguments {
+    /// The ports to try, in order.
+    pub(crate) fn ports(&self) -> Vec<u16> {
+        self.port.map_or_else(|| vec![PORT, 0], |port| vec![port])
+    }
+}
+
+impl Default for ServeArguments {
+    fn default() -> Self {
+        Self {
+            scene: None,
+            port: None,
+            address: IpAddr::V4(Ipv4Addr::LOCALHOST),
+            allow_host: Vec::new(),
+            no_open: false,
+            threads: None,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

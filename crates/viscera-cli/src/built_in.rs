@@ -6,27 +6,10 @@ use std::path::Path;
 use tempfile::TempDir;
 use viscera_scene::Scene;
 use viscera_scene::file::SceneFile;
+use viscera_session::library;
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
-
-macro_rules! files {
-    ($($path:literal),+ $(,)?) => {
-        &[$(($path, include_str!(concat!("../../../scenes/", $path)))),+]
-    };
-}
-
-/// Every file of the project's folder `scenes`, so that an installed program has them at hand.
-pub(crate) const FILES: &[(&str, &str)] = files![
-    "cylinder-bend.toml",
-    "fibre-tubes.toml",
-    "liver-adaptive.toml",
-    "liver-inversion.toml",
-    "liver-pull.toml",
-    "liver-resection.toml",
-    "paths/liver-resection.csv",
-    "scene.schema.json",
-];
 
 /// A scene with its name, and the folder that holds the files of a built-in one as long as it is needed.
 pub(crate) struct OpenScene {
@@ -35,17 +18,12 @@ pub(crate) struct OpenScene {
     _folder: Option<TempDir>,
 }
 
-/// Names and texts of the built-in scenes.
-pub(crate) fn scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
-    FILES.iter().filter_map(|(path, text)| Some((path.strip_suffix(".toml")?, *text)))
-}
-
 /// Writes the built-in scenes and their files into a folder.
 pub(crate) fn copy_to(folder: &Path) -> std::io::Result<()> {
-    for (path, text) in FILES {
+    for (path, bytes) in library::FILES {
         let path = folder.join(path);
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        fs::write(path, text)?;
+        fs::write(path, bytes)?;
     }
     Ok(())
 }
@@ -79,8 +57,8 @@ impl OpenScene {
             return Ok(Self { scene: Scene::load(path).map_err(Failure::scene)?, name, _folder: None });
         }
         let wanted = scene.strip_suffix(".toml").unwrap_or(scene);
-        let Some((name, text)) = scenes().find(|(name, _)| *name == wanted) else {
-            let known: Vec<_> = scenes().map(|(name, _)| name).collect();
+        let Some((name, text)) = library::scenes().find(|(name, _)| *name == wanted) else {
+            let known: Vec<_> = library::scenes().map(|(name, _)| name).collect();
             return Err(Failure::input(format!(
                 "{scene}: there is no such file, and no built-in scene of that name; built in are {}",
                 known.join(", ")
@@ -97,31 +75,5 @@ impl OpenScene {
     /// The checked file.
     pub(crate) fn file(&self) -> Result<SceneFile, Failure> {
         self.scene.check().map_err(Failure::scene)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_file_of_the_scenes_folder_is_built_in() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-        let mut found = Vec::new();
-        let mut folders = vec![root.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    found.push(path.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/"));
-                }
-            }
-        }
-        found.sort();
-        let mut known: Vec<_> = FILES.iter().map(|(path, _)| (*path).to_owned()).collect();
-        known.sort();
-        assert_eq!(known, found);
     }
 }

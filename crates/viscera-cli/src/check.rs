@@ -58,6 +58,7 @@ fn warnings(file: &SceneFile, summary: &SceneSummary) -> Vec<String> {
     }
     for (name, instrument) in &file.instrument {
         let begins = match instrument {
+            InstrumentFile::Probe { .. } => 0.0,
             InstrumentFile::Grasper { close, .. } => close.0,
             InstrumentFile::Cautery { on, .. } => on.map_or(0.0, |on| on.0),
         };

@@ -11,6 +11,7 @@ mod mesh;
 mod profile;
 mod run;
 mod scenes;
+mod serve;
 mod stopwatch;
 mod tables;
 mod terminal;
@@ -19,7 +20,7 @@ mod units;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Command};
-use clap::{CommandFactory, Parser};
+use clap::Parser;
 use failure::Failure;
 
 fn main() -> ExitCode {
@@ -41,13 +42,12 @@ fn carry_out(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Bench { command }) => bench::carry_out(&command),
         Some(Command::Mesh { command }) => mesh::carry_out(&command),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
+        Some(Command::Serve(arguments)) => serve::serve(&arguments),
         Some(Command::Schema) => {
             terminal::say(&viscera_scene::schema_text());
             Ok(())
         }
-        None => {
-            terminal::say(&Arguments::command().render_help().ansi().to_string());
-            Ok(())
-        }
+        // What most people want who type the name alone.
+        None => serve::serve(&arguments::ServeArguments::default()),
     }
 }

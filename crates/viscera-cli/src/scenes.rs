@@ -1,6 +1,7 @@
 //! `viscera scenes`: what is built in.
 
 use viscera_scene::Scene;
+use viscera_session::library;
 
 use crate::arguments::ScenesArguments;
 use crate::built_in;
@@ -14,8 +15,8 @@ pub(crate) fn scenes(arguments: &ScenesArguments) -> Result<(), Failure> {
         terminal::say(&format!("the scenes are in {}", folder.display()));
         return Ok(());
     }
-    let width = built_in::scenes().map(|(name, _)| name.len()).max().unwrap_or(0);
-    for (name, text) in built_in::scenes() {
+    let width = library::scenes().map(|(name, _)| name.len()).max().unwrap_or(0);
+    for (name, text) in library::scenes() {
         let file = Scene::parse(text, "").and_then(|scene| scene.check()).map_err(Failure::scene)?;
         terminal::say(&format!("{name:<width$}  {}", file.title.unwrap_or_default()));
     }

@@ -14,6 +14,7 @@ const ORDER: &[&str] = &[
     "material",
     "model",
     "solver",
+    "contact",
     "body",
     "dynamics",
     "cutting",

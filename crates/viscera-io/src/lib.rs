@@ -25,4 +25,4 @@ pub mod write;
 pub use cell_kind::{CellKind, Shape};
 pub use error::{ParseError, Place, Problem, ReadError};
 pub use imported::{Imported, ImportedMesh, Notice, grouped};
-pub use read::{ImportedVolume, read_mesh, read_volume};
+pub use read::{ImportedVolume, read_mesh, read_mesh_bytes, read_volume, read_volume_bytes};

@@ -33,10 +33,23 @@ pub fn read_mesh(path: impl AsRef<Path>, scale: f64) -> Result<Imported, ReadErr
         ErrorKind::NotFound => ReadError::NoSuchFile { path: path.to_owned() },
         _ => ReadError::Unreadable { path: path.to_owned(), source },
     })?;
-    let parse = parser_of_content(&bytes)
+    read_mesh_bytes(path, &bytes, scale)
+}
+
+/// The same for a file whose bytes are at hand; `path` is what messages call it, and its extension tells the format where the
+/// content does not.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_bytes(path: impl AsRef<Path>, bytes: &[u8], scale: f64) -> Result<Imported, ReadError> {
+    let path = path.as_ref();
+    if !(scale.is_finite() && scale > 0.0) {
+        return Err(ReadError::Scale { scale });
+    }
+    let parse = parser_of_content(bytes)
         .or_else(|| parser_of_extension(path))
-        .ok_or_else(|| ReadError::UnknownFormat { path: path.to_owned(), start: excerpt(&bytes) })?;
-    let mut imported = parse(&bytes).map_err(|source| ReadError::Content { path: path.to_owned(), source })?;
+        .ok_or_else(|| ReadError::UnknownFormat { path: path.to_owned(), start: excerpt(bytes) })?;
+    let mut imported = parse(bytes).map_err(|source| ReadError::Content { path: path.to_owned(), source })?;
     imported.mesh.scale(scale);
     Ok(imported)
 }
@@ -47,7 +60,19 @@ pub fn read_mesh(path: impl AsRef<Path>, scale: f64) -> Result<Imported, ReadErr
 /// As [`read_mesh`]; [`ReadError::SurfaceOnly`] for a surface; [`ReadError::Mesh`] for a mesh that fails the check.
 pub fn read_volume(path: impl AsRef<Path>, scale: f64) -> Result<ImportedVolume, ReadError> {
     let path = path.as_ref();
-    let Imported { mesh, notices } = read_mesh(path, scale)?;
+    checked_volume(path, read_mesh(path, scale)?)
+}
+
+/// The same for a file whose bytes are at hand, see [`read_mesh_bytes`].
+///
+/// # Errors
+/// As [`read_volume`].
+pub fn read_volume_bytes(path: impl AsRef<Path>, bytes: &[u8], scale: f64) -> Result<ImportedVolume, ReadError> {
+    let path = path.as_ref();
+    checked_volume(path, read_mesh_bytes(path, bytes, scale)?)
+}
+
+fn checked_volume(path: &Path, Imported { mesh, notices }: Imported) -> Result<ImportedVolume, ReadError> {
     let checked = match mesh {
         ImportedMesh::Tet(mesh) => mesh.checked().map(|(mesh, report)| (VolumeMesh::Tet(mesh), report)),
         ImportedMesh::Hex(mesh) => mesh.checked().map(|(mesh, report)| (VolumeMesh::Hex(mesh), report)),

@@ -8,14 +8,16 @@ mod check;
 mod document;
 mod error;
 pub mod file;
+mod files;
 pub mod quantity;
 mod scene;
 mod schema;
 mod summary;
 pub mod unit;
 
-pub use build::BuiltScene;
+pub use build::{BuiltScene, Meshes};
 pub use error::{Place, SceneError, SceneErrors};
+pub use files::Files;
 pub use scene::Scene;
 pub use schema::{schema, schema_text};
 pub use summary::{BodySummary, InstrumentSummary, SceneSummary};

@@ -68,6 +68,8 @@ quantities! {
     Acceleration = ACCELERATION, "An acceleration [m/s²].";
     Angle = ANGLE, "An angle [rad].";
     Rate = RATE, "A rate [1/s].";
+    Power = POWER, "A power [W].";
+    EnergyDensity = ENERGY_DENSITY, "An energy for each volume [J/m³].";
 }
 
 struct NumberOrText(&'static Dimension);

@@ -5,6 +5,7 @@ use crate::check::check;
 use crate::document::Document;
 use crate::error::{SceneError, SceneErrors};
 use crate::file::SceneFile;
+use crate::files::Files;
 use crate::schema::schema;
 
 /// A scene file and its overrides.
@@ -13,12 +14,12 @@ use crate::schema::schema;
 #[derive(Clone, PartialEq)]
 pub struct Scene {
     pub(crate) document: Document,
-    folder: PathBuf,
+    pub(crate) files: Files,
 }
 
 impl fmt::Debug for Scene {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.debug_struct("Scene").field("folder", &self.folder).finish_non_exhaustive()
+        formatter.debug_struct("Scene").field("files", &self.files).finish_non_exhaustive()
     }
 }
 
@@ -34,7 +35,7 @@ impl Scene {
             SceneError::without_place(message, "give the path of a TOML scene file")
         })?;
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Ok(Self { document: Document::parse(&path.display().to_string(), &text)?, folder })
+        Ok(Self { document: Document::parse(&path.display().to_string(), &text)?, files: Files::Folder(folder) })
     }
 
     /// Takes a scene from its text. Files that it names are looked for in `folder`.
@@ -42,7 +43,15 @@ impl Scene {
     /// # Errors
     /// Where the text is not TOML.
     pub fn parse(text: &str, folder: impl Into<PathBuf>) -> Result<Self, SceneErrors> {
-        Ok(Self { document: Document::parse("scene", text)?, folder: folder.into() })
+        Self::parse_with("scene", text, Files::Folder(folder.into()))
+    }
+
+    /// Takes a scene from its text; `name` is what messages call it, and `files` has those that it names.
+    ///
+    /// # Errors
+    /// Where the text is not TOML.
+    pub fn parse_with(name: &str, text: &str, files: Files) -> Result<Self, SceneErrors> {
+        Ok(Self { document: Document::parse(name, text)?, files })
     }
 
     /// A scene that was made by a program instead of written.
@@ -50,8 +59,16 @@ impl Scene {
     /// # Errors
     /// Where a number is not one that TOML can hold.
     pub fn from_file(file: &SceneFile, folder: impl Into<PathBuf>) -> Result<Self, SceneErrors> {
+        Self::from_file_with(file, Files::Folder(folder.into()))
+    }
+
+    /// The same with `files`.
+    ///
+    /// # Errors
+    /// As [`Scene::from_file`].
+    pub fn from_file_with(file: &SceneFile, files: Files) -> Result<Self, SceneErrors> {
         let text = file.to_toml().map_err(|error| SceneError::without_place(error.to_string(), ""))?;
-        Self::parse(&text, folder)
+        Self::parse_with("scene", &text, files)
     }
 
     /// Sets the value of a dotted key, such as `body.liver.law.young` to `8 kPa`: a TOML value, or else a string.
@@ -74,6 +91,11 @@ impl Scene {
             .map_err(|error| self.document.error_at(&[], error.to_string(), "").into())
     }
 
+    /// The files that the scene may name.
+    pub fn source_of_files(&self) -> &Files {
+        &self.files
+    }
+
     /// Every file that the scene names, meshes and tables, where it is looked for; in the order of the keys.
     ///
     /// # Errors
@@ -82,13 +104,8 @@ impl Scene {
         let file = self.check()?;
         let tree = serde_json::to_value(file).map_err(|error| SceneError::without_place(error.to_string(), ""))?;
         let mut files = Vec::new();
-        files_in(&tree, &mut |file| files.push(self.path(file)));
+        files_in(&tree, &mut |file| files.push(self.files.path(file)));
         Ok(files)
-    }
-
-    /// A file that the scene names.
-    pub(crate) fn path(&self, file: &Path) -> PathBuf {
-        self.folder.join(file)
     }
 }
 

@@ -149,6 +149,7 @@ impl<T: Scalar> BuiltScene<T> {
         let end = self.file.duration.0;
         let instrument = self.world.instrument(self.instruments[name]);
         let active = match &self.file.instrument[name] {
+            InstrumentFile::Probe { .. } => (0.0, end),
             InstrumentFile::Grasper { close, open, .. } => (close.0, open.map_or(end, |open| open.0)),
             InstrumentFile::Cautery { on, off, .. } => (on.map_or(0.0, |on| on.0), off.map_or(end, |off| off.0)),
         };

@@ -42,6 +42,11 @@ dimensions! {
     ACCELERATION = "acceleration" { "m/s^2" = 1.0, 1.0; "m/s²" = 1.0, 1.0; }
     ANGLE = "angle" { "rad" = 1.0, 1.0; "deg" = PI, 180.0; "°" = PI, 180.0; }
     RATE = "rate" { "1/s" = 1.0, 1.0; "s^-1" = 1.0, 1.0; "Hz" = 1.0, 1.0; }
+    POWER = "power" { "W" = 1.0, 1.0; "mW" = 1.0, 1e3; "kW" = 1e3, 1.0; }
+    ENERGY_DENSITY = "energy density" {
+        "J/m^3" = 1.0, 1.0; "J/m³" = 1.0, 1.0; "J/cm^3" = 1e6, 1.0; "J/cm³" = 1e6, 1.0; "J/mm^3" = 1e9, 1.0;
+        "J/mm³" = 1e9, 1.0;
+    }
 }
 
 /// Why a string is not a quantity of the wanted dimension.
@@ -176,6 +181,8 @@ mod tests {
             (&ACCELERATION, "9.81 m/s^2", 9.81),
             (&ANGLE, "180 deg", PI),
             (&RATE, "5 1/s", 5.0),
+            (&POWER, "40 W", 40.0),
+            (&ENERGY_DENSITY, "2.4 J/mm^3", 2.4e9),
         ] {
             assert_eq!(dimension.parse(text), Ok(si), "{text}");
         }

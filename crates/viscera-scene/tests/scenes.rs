@@ -78,7 +78,7 @@ fn the_resected_lobe_swings_from_the_grasper_on_no_more_energy_than_was_put_in()
         built.world.step().unwrap_or_else(|error| panic!("{error}"));
         let (now, lobe) = (Account::now(&mut built), Lobe::now(&built));
         let step = now.time - before.time;
-        put_in += 0.5 * (now.grasper.force + before.grasper.force).dot(now.grasper.tip - before.grasper.tip)
+        put_in += now.grasper.force.dot(now.grasper.tip - before.grasper.tip)
             + 0.5 * step * (now.gravity_power() + before.gravity_power())
             - DAMPING * step * (now.liver.kinetic_energy + before.liver.kinetic_energy);
         ledger.push((now.time, put_in, now.energy() - put_in));
@@ -238,4 +238,71 @@ fn a_liver_that_was_turned_inside_out_finds_its_shape_again() {
         assert_eq!(observed.inverted_cells, 0);
         assert!(observed.max_displacement < 3e-3, "{} m", observed.max_displacement);
     }
+}
+
+/// The liver that waits for hands hangs from its back: what is held there carries its weight.
+///
+/// It is damped so much that it comes to rest in its two seconds, and made of larger cells.
+#[test]
+fn the_waiting_liver_hangs_by_its_weight() {
+    let overrides = [("body.liver.damping", "12 1/s"), ("body.liver.mesh.edge", "25 mm"), ("duration", "4 s")];
+    let mut built = run("liver.toml", &overrides);
+    let liver = built.bodies["liver"];
+    let observed = built.world.observe(liver);
+    let weight = 9.81 * observed.mass;
+    assert!((observed.reaction.y / weight - 1.0).abs() < 0.01, "{} N carry {weight} N", observed.reaction.y);
+    assert!(observed.inverted_cells == 0 && observed.max_displacement > 5e-3, "{observed:?}");
+}
+
+/// What the probe and what is fixed give the liver is what its momentum gains, gravity's share included. Pressed, it carries no tissue within
+/// its radius; drawn along x, it drags the lobe along x; withdrawn, it feels nothing.
+#[test]
+fn a_probe_feels_what_it_dents_and_leaves_nothing_behind() {
+    const RADIUS: f64 = 5e-3;
+    let mut built = scene("liver-probe.toml", &[]).build::<f64>().unwrap_or_else(|errors| panic!("{errors}"));
+    let (liver, probe) = (built.bodies["liver"], built.instruments["probe"]);
+    let damping = 8.0;
+    let mut before = built.world.observe(liver);
+    let (mut given, mut strongest) = (Vec3::ZERO, 0.0f64);
+    let (mut pressed, mut dragged) = (Vec3::ZERO, 0.0f64);
+    for _ in 0..built.steps() {
+        built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        let (time, step) = (built.world.time(), built.world.config().step);
+        let (now, tool) = (built.world.observe(liver), *built.world.tool(probe));
+        let weight = Vec3::new(0.0, -9.81 * now.mass, 0.0);
+        let held = (now.reaction + before.reaction) * 0.5 - (now.momentum + before.momentum) * (0.5 * damping);
+        given += (tool.contact_force + held + weight) * step;
+        strongest = strongest.max(tool.contact_force.norm());
+        if tool.contacts > 0 {
+            assert!(
+                clearance(built.world.body(liver), &built.world.tool_capsules(probe)[0]) > 0.9 * RADIUS,
+                "{time} s"
+            );
+        }
+        if (1.39..1.405).contains(&time) {
+            pressed = tool.contact_force;
+        }
+        if (1.5..1.9).contains(&time) {
+            dragged = dragged.max((tool.contact_force.x - pressed.x) / tool.contact_force.norm());
+        }
+        before = now;
+    }
+    // Reactions at the ends of steps stand for their means.
+    let scale = strongest * 0.1;
+    assert!((before.momentum - given).norm() < 0.05 * scale, "{given:?} N s, and {:?} is there", before.momentum);
+    assert!(pressed.y < -0.05, "{pressed:?} N");
+    assert!(dragged > 0.05, "{dragged} of the force along the way");
+    let tool = built.world.tool(probe);
+    assert_eq!((tool.contacts, tool.contact_force), (0, Vec3::ZERO));
+}
+
+/// Distance of the nearest node of the surface to the axis of a rod [m].
+fn clearance(body: &SimulatedBody<f64>, rod: &viscera::instrument::Capsule) -> f64 {
+    let along = rod.to - rod.from;
+    let distance = |node: u32| {
+        let place = body.positions()[node as usize];
+        let share = ((place - rod.from).dot(along) / along.squared_norm()).clamp(0.0, 1.0);
+        (place - rod.from - along * share).norm()
+    };
+    body.surface().iter().flat_map(|triangle| triangle.nodes).map(distance).fold(f64::INFINITY, f64::min)
 }

@@ -72,6 +72,7 @@ fn a_written_scene_reads_as_the_same_scene() {
             { region = "surface", normal = [1, 0, 0] },
             { region = "all", normal = [0, 0, 2], displacement = [["0 s", 0], ["1 s", "1 cm"]] },
         ]
+        attach = [{ region = "surface", to = "b" }]
         load = [
             { region = { half-space = { point = [0, 0, 0], normal = [1, 0, 0] } }, force = [0, "1 N", 0] },
             { region = "surface", pressure = [[0, 0], [1, "2 kPa"]] },
@@ -94,6 +95,24 @@ fn a_written_scene_reads_as_the_same_scene() {
         kind = "cautery"
         path = [0, 0, 0]
         on = "1 s"
+        power = "40 W"
+        heat = "2.4 J/mm^3"
+        shaft = { radius = "1 mm" }
+        trocar = [0, "20 cm", 0]
+
+        [instrument.probe]
+        kind = "probe"
+        path = [["0 s", [0, 0, 0]], ["1 s", [0, "1 cm", 0]]]
+        direction = [0, -1, 1]
+        friction = 0.2
+
+        [instrument.jaws]
+        kind = "grasper"
+        path = [0, 0, 0]
+        close = "1 s"
+        grip = "2 N"
+        jaws = { opening = "50 deg" }
+        roll = "90 deg"
     "#;
     let read = |text: &str| Scene::parse(text, "").and_then(|scene| scene.check()).unwrap_or_else(|e| panic!("{e}"));
     let scene = read(text);

@@ -4,8 +4,12 @@
 //! parts: the bits of a result do not depend on how many threads there are.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
+
+/// How often a thread looks for work before it lets others have its core.
+const PATIENCE: u32 = 1000;
 
 /// Threads that a step may use; by default just the one that calls.
 ///
@@ -13,6 +17,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 #[derive(Clone, Debug, Default)]
 pub struct Executor {
     pool: Option<Arc<ThreadPool>>,
+    /// Whether each thread has a core of its own, as far as the machine goes.
+    has_cores: bool,
 }
 
 /// Why there are no threads to compute with.
@@ -42,8 +48,9 @@ impl Executor {
         if threads <= 1 {
             return Ok(Self::serial());
         }
+        let has_cores = std::thread::available_parallelism().is_ok_and(|cores| threads <= cores.get());
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map(|pool| Self { pool: Some(Arc::new(pool)) })
+        pool.map(|pool| Self { pool: Some(Arc::new(pool)), has_cores })
             .map_err(|source| ExecutorError::NoThreads { threads, source })
     }
 
@@ -52,9 +59,11 @@ impl Executor {
         self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does `work` among the threads: what it divides then finds them awake.
+    /// Does `work` among the threads: what it divides then finds them awake. A step has hundreds of loops of a few microseconds,
+    /// and to wake a thread for each takes longer. Threads without a core of their own would only be in each other's way.
     pub(crate) fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
+            Some(pool) if self.has_cores => pool.install(|| among_wakeful_threads(work)),
             Some(pool) => pool.install(work),
             None => work(),
         }
@@ -77,6 +86,35 @@ impl Executor {
             Some(pool) if parts > 1 => pool.install(|| fold::<D, R, true>(0, parts, data, work, merge)),
             _ => fold::<D, R, false>(0, parts, data, work, merge),
         })
+    }
+}
+
+/// Does `work` while the other threads of the pool look for parts of it without sleeping in between.
+fn among_wakeful_threads<R>(work: impl FnOnce() -> R) -> R {
+    let (own, finished) = (rayon::current_thread_index(), AtomicBool::new(false));
+    rayon::in_place_scope(|scope| {
+        scope.spawn_broadcast(|_, thread| {
+            let mut idle = 0;
+            while Some(thread.index()) != own && !finished.load(Ordering::Acquire) {
+                idle = if rayon::yield_now() == Some(Yield::Executed) { 0 } else { idle + 1 };
+                if idle < PATIENCE {
+                    std::hint::spin_loop();
+                } else {
+                    std::thread::yield_now();
+                }
+            }
+        });
+        let _finish = Finish(&finished);
+        work()
+    })
+}
+
+/// Says that the work is finished, also where it panics.
+struct Finish<'a>(&'a AtomicBool);
+
+impl Drop for Finish<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
     }
 }
 
@@ -104,8 +142,8 @@ pub(crate) trait Divide: Send + Sized {
     fn divide(self, parts: usize) -> (Self, Self);
 }
 
-/// Nodes in a part of a nodal array: enough work to be worth handing over, and few enough to stay in the fastest cache.
-pub(crate) const NODE_BLOCK: usize = 1024;
+/// Nodes in a part of a nodal array: enough work to be worth handing over, and few enough to divide a small body evenly.
+pub(crate) const NODE_BLOCK: usize = 512;
 
 /// How many parts a nodal array has.
 pub(crate) fn node_blocks(nodes: usize) -> usize {

@@ -6,6 +6,7 @@
 //! but those of the executor that a step is given.
 
 pub mod body;
+pub mod contact;
 pub mod curve;
 mod cutting;
 pub mod dynamics;

@@ -70,7 +70,7 @@ mod tests {
     use viscera_scene::Scene;
 
     use super::*;
-    use crate::built_in::scenes;
+    use viscera_session::library::scenes;
 
     /// Memory that a round asks for is given back by its end, to the byte: an hour of rounds needs no more than the first.
     #[test]

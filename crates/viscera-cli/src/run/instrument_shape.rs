@@ -1,6 +1,5 @@
-//! How instruments look: a shaft that comes from above and in front, and at its tip jaws or a hook.
-//!
-//! Only the tip is simulated; the shaft shows where it is held from.
+//! How instruments look: their rigid parts as they are; where only a tip is simulated, a shaft that comes from above and in front, and at
+//! its tip jaws or a hook, which show where it is held from.
 
 use viscera::mesh::Point;
 use viscera_io::picture::{Colour, Solid, Tool};
@@ -18,6 +17,11 @@ pub(super) fn solids(tool: &ToolPose, towards: Point, size: f64) -> Vec<Solid> {
     let hand = tool.tip + towards * (0.6 * size);
     let rod = |from: Point, to: Point, start: f64, end: f64| Tool::tapered(from.to_array(), to.to_array(), start, end);
     let shaft = rod(neck, hand, radius, radius);
+    if !tool.parts.is_empty() {
+        let hot = Colour::new(255, 150, 60);
+        let colour = |solid: Solid| if tool.active && tool.kind == "cautery" { solid.colour(hot) } else { solid };
+        return tool.parts.iter().map(|&(from, to, radius)| colour(rod(from, to, radius, radius))).collect();
+    }
     match &*tool.kind {
         "cautery" => {
             let colour = if tool.active { Colour::new(255, 150, 60) } else { Colour::STEEL };

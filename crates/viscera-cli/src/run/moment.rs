@@ -35,6 +35,8 @@ pub(super) struct ToolPose {
     pub(super) tip: Point,
     pub(super) reach: f64,
     pub(super) active: bool,
+    /// Its rigid parts, where it has some: rods by their ends, and their radius [m].
+    pub(super) parts: Vec<(Point, Point, f64)>,
 }
 
 impl Moment {
@@ -42,11 +44,12 @@ impl Moment {
         let world = &built.world;
         let time = world.time();
         let bodies = || built.bodies.values().map(|&id| world.body(id));
-        let tools = built.instruments.values().map(|&id| world.instrument(id)).map(|instrument| ToolPose {
-            kind: instrument.kind().to_owned(),
-            tip: instrument.path().at(time),
-            reach: instrument.reach(),
-            active: instrument.is_active(time),
+        let tools = built.instruments.values().map(|&id| ToolPose {
+            kind: world.instrument(id).kind().to_owned(),
+            tip: world.tool(id).pose.tip,
+            reach: world.instrument(id).reach(),
+            active: world.is_at_work(id),
+            parts: world.tool_capsules(id).into_iter().map(|part| (part.from, part.to, part.radius)).collect(),
         });
         Self {
             step,

@@ -50,10 +50,20 @@ impl Table {
 /// # Errors
 /// [`WriteError::Unwritable`].
 pub fn write_csv(path: impl AsRef<Path>, table: &Table) -> Result<(), WriteError> {
-    write_atomically(path, |out| {
-        write_line(out, table.header.iter().map(|name| quoted(name)))?;
-        table.rows().try_for_each(|row| write_line(out, row.iter().map(f64::to_string)))
-    })
+    write_atomically(path, |out| write_table(out, table))
+}
+
+/// The same text in memory.
+pub fn csv_text(table: &Table) -> String {
+    let mut bytes = Vec::new();
+    // Writing into memory does not fail, and numbers and names are text.
+    let _ = write_table(&mut bytes, table);
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+fn write_table(out: &mut impl Write, table: &Table) -> io::Result<()> {
+    write_line(out, table.header.iter().map(|name| quoted(name)))?;
+    table.rows().try_for_each(|row| write_line(out, row.iter().map(f64::to_string)))
 }
 
 fn write_line(out: &mut impl Write, mut cells: impl Iterator<Item = String>) -> io::Result<()> {

@@ -9,9 +9,9 @@ mod pvd;
 mod vtu;
 
 pub use atomically::write_atomically;
-pub use csv::{Table, write_csv};
+pub use csv::{Table, csv_text, write_csv};
 pub use error::WriteError;
 pub use field::{Field, Values};
 pub use msh::{write_hex_msh, write_tet_msh};
 pub use pvd::TimeSeries;
-pub use vtu::{Cells, Encoding, Grid, write_vtu};
+pub use vtu::{Cells, Encoding, Grid, vtu_bytes, write_vtu};

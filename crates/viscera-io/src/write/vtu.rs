@@ -155,6 +155,18 @@ pub fn write_vtu(path: impl AsRef<Path>, grid: &Grid, encoding: Encoding) -> Res
     write_atomically(path, |out| write_document(out, grid, encoding))
 }
 
+/// The same bytes in memory.
+///
+/// # Errors
+/// [`WriteError`]: a field of the wrong length, or a cell with a missing node.
+pub fn vtu_bytes(grid: &Grid, encoding: Encoding) -> Result<Vec<u8>, WriteError> {
+    grid.check()?;
+    let mut bytes = Vec::new();
+    write_document(&mut bytes, grid, encoding)
+        .map_err(|source| WriteError::Unwritable { path: "memory".into(), source })?;
+    Ok(bytes)
+}
+
 fn write_document(out: &mut impl Write, grid: &Grid, encoding: Encoding) -> io::Result<()> {
     let count = grid.cells.len();
     let corners = (0..count).flat_map(|cell| grid.cells.corners(cell)).flat_map(|&node| i64::from(node).to_le_bytes());

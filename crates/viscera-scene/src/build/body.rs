@@ -6,7 +6,7 @@ use viscera::model::ModelError;
 
 use super::curve::curve;
 use super::law::{densities, tissue};
-use super::mesh::{PlacedMesh, mesh};
+use super::mesh::{Meshes, PlacedMesh};
 use super::model::recipe;
 use super::region::{Wanted, region};
 use super::site::Site;
@@ -14,8 +14,13 @@ use crate::error::SceneErrors;
 use crate::file::{BodyFile, LoadFile, LoosePiecesFile};
 
 /// The body, and what a person should know about its mesh.
-pub(super) fn body(name: &str, file: &BodyFile, site: &Site) -> Result<(Body, Vec<String>), SceneErrors> {
-    let placed = mesh(&file.mesh, file.place.as_ref(), site)?;
+pub(super) fn body(
+    name: &str,
+    file: &BodyFile,
+    meshes: &mut Meshes,
+    site: &Site,
+) -> Result<(Body, Vec<String>), SceneErrors> {
+    let placed = meshes.placed(file, site)?;
     let tissue = tissue(file, &placed, site)?;
     let densities = densities(file, &placed.mesh, site)?;
     let PlacedMesh { mesh, notices, .. } = placed;

@@ -16,10 +16,12 @@ pub(super) fn read(
     columns: &[Option<&'static Dimension>],
 ) -> Result<Vec<Vec<f64>>, SceneErrors> {
     let path = site.path(file);
-    let text = std::fs::read_to_string(&path).map_err(|error| {
+    let unreadable = |error: &dyn std::fmt::Display| {
         site.error(format!("cannot read {}: {error}", path.display()), "the path starts at the scene file's folder")
-    })?;
-    parse(&text, columns)
+    };
+    let bytes = site.read(file).map_err(|error| unreadable(&error))?;
+    let text = std::str::from_utf8(&bytes).map_err(|error| unreadable(&error))?;
+    parse(text, columns)
         .map_err(|(line, problem)| site.error(format!("{}, line {line}: {problem}", path.display()), ""))
 }
 

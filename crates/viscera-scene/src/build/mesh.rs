@@ -3,19 +3,38 @@ use viscera::mesh::{CubeCut, GenerateError, HexMesh, TetMesh, TubeDivisions, Vol
 
 use super::site::Site;
 use crate::error::SceneErrors;
-use crate::file::{CellShape, CutFile, GenerateFile, MeshFile, PlaceFile, SurfaceFile, VolumeFile};
+use crate::file::{BodyFile, CellShape, CutFile, GenerateFile, MeshFile, PlaceFile, SurfaceFile, VolumeFile};
 
 /// More cells than this fit into no ordinary memory: 50 million tetrahedra take about 30 GB.
 const MOST_CELLS: f64 = 5e7;
 
 /// A mesh in its place, and what a person should know about where it came from.
+#[derive(Clone, Debug)]
 pub(super) struct PlacedMesh {
     pub(super) mesh: VolumeMesh,
     pub(super) turn: Mat3<f64>,
     pub(super) notices: Vec<String>,
 }
 
-pub(super) fn mesh(file: &MeshFile, place: Option<&PlaceFile>, body: &Site) -> Result<PlacedMesh, SceneErrors> {
+/// Meshes of bodies that were built before: one whose file and place are still the same is not read or made again.
+#[derive(Debug, Default)]
+pub struct Meshes {
+    known: Vec<(MeshFile, Option<PlaceFile>, PlacedMesh)>,
+}
+
+impl Meshes {
+    pub(super) fn placed(&mut self, body: &BodyFile, site: &Site) -> Result<PlacedMesh, SceneErrors> {
+        let known = self.known.iter().find(|(mesh, place, _)| *mesh == body.mesh && *place == body.place);
+        if let Some((.., placed)) = known {
+            return Ok(placed.clone());
+        }
+        let placed = mesh(&body.mesh, body.place.as_ref(), site)?;
+        self.known.push((body.mesh.clone(), body.place.clone(), placed.clone()));
+        Ok(placed)
+    }
+}
+
+fn mesh(file: &MeshFile, place: Option<&PlaceFile>, body: &Site) -> Result<PlacedMesh, SceneErrors> {
     let site = body.key("mesh");
     let mut notices = Vec::new();
     let mut mesh = match file {
@@ -37,8 +56,12 @@ pub(super) fn mesh(file: &MeshFile, place: Option<&PlaceFile>, body: &Site) -> R
 
 fn read_volume(file: &VolumeFile, site: &Site, notices: &mut Vec<String>) -> Result<VolumeMesh, SceneErrors> {
     let scale = file.unit.in_metres() * file.scale;
-    let read =
-        viscera_io::read_volume(site.path(&file.file), scale).map_err(|error| site.key("file").error(error, ""))?;
+    let key = site.key("file");
+    let read = match key.in_memory(&file.file)? {
+        Some(bytes) => viscera_io::read_volume_bytes(&file.file, &bytes, scale),
+        None => viscera_io::read_volume(site.path(&file.file), scale),
+    };
+    let read = read.map_err(|error| key.error(error, ""))?;
     notices.extend(read.notices.iter().map(ToString::to_string));
     notices.push(read.report.to_string());
     Ok(read.mesh)
@@ -46,8 +69,12 @@ fn read_volume(file: &VolumeFile, site: &Site, notices: &mut Vec<String>) -> Res
 
 fn fill_surface(file: &SurfaceFile, site: &Site, notices: &mut Vec<String>) -> Result<VolumeMesh, SceneErrors> {
     let scale = file.unit.in_metres() * file.scale;
-    let read =
-        viscera_io::read_mesh(site.path(&file.surface), scale).map_err(|error| site.key("surface").error(error, ""))?;
+    let key = site.key("surface");
+    let read = match key.in_memory(&file.surface)? {
+        Some(bytes) => viscera_io::read_mesh_bytes(&file.surface, &bytes, scale),
+        None => viscera_io::read_mesh(site.path(&file.surface), scale),
+    };
+    let read = read.map_err(|error| key.error(error, ""))?;
     let viscera_io::ImportedMesh::Surface(surface) = read.mesh else {
         let advice = "name it with `file` instead, or give a file of triangles (STL, OBJ)";
         return Err(site.key("surface").error("the file holds a volume mesh already", advice));

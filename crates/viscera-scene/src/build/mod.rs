@@ -1,5 +1,6 @@
 //! From a checked scene to a world.
 
+mod attachment;
 mod body;
 mod csv;
 mod curve;
@@ -15,11 +16,12 @@ use indexmap::IndexMap;
 use viscera::math::Scalar;
 use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
-use viscera::world::{BodyId, InstrumentId, World, WorldConfig, WorldError};
+use viscera::world::{AttachmentId, BodyId, InstrumentId, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
 use crate::file::{InstrumentFile, SceneFile};
 use crate::scene::Scene;
+pub use mesh::Meshes;
 use site::Site;
 
 /// A world that is ready to run, and the names that the scene gives to what is in it.
@@ -30,6 +32,8 @@ pub struct BuiltScene<T: Scalar> {
     pub world: World<T>,
     /// Bodies by name, in the order of the file.
     pub bodies: IndexMap<String, BodyId>,
+    /// Attachments by the name of the body that is attached, in the order of the file.
+    pub attachments: IndexMap<String, Vec<AttachmentId>>,
     /// Instruments by name, in the order of the file.
     pub instruments: IndexMap<String, InstrumentId>,
     /// What was found and repaired in mesh files, by the name of the body.
@@ -53,6 +57,14 @@ impl Scene {
     /// All that [`check`](Self::check) finds; and the first file that cannot be read, region that selects nothing, law
     /// that the model does not compute, or substep that is too long.
     pub fn build<T: Precision>(&self) -> Result<BuiltScene<T>, SceneErrors> {
+        self.build_reusing(&mut Meshes::default())
+    }
+
+    /// The same, where `meshes` has what was read and made before by scenes with the same files.
+    ///
+    /// # Errors
+    /// As [`Scene::build`].
+    pub fn build_reusing<T: Precision>(&self, meshes: &mut Meshes) -> Result<BuiltScene<T>, SceneErrors> {
         let file = self.check()?;
         let root = Site::root(self);
         let config = WorldConfig {
@@ -65,7 +77,7 @@ impl Scene {
         let mut bodies = IndexMap::new();
         for (name, described) in &file.body {
             let site = root.key("body").key(name);
-            let (body, of_mesh) = body::body(name, described, &site)?;
+            let (body, of_mesh) = body::body(name, described, meshes, &site)?;
             notices.extend(of_mesh.into_iter().map(|notice| (name.clone(), notice)));
             let id = world.add(body).map_err(|error| match &error {
                 WorldError::Body(of_body) => body::blame(of_body, &site),
@@ -86,6 +98,12 @@ impl Scene {
             })?;
             bodies.insert(name.clone(), id);
         }
+        let mut attachments = IndexMap::new();
+        for (name, described) in &file.body {
+            let site = root.key("body").key(name);
+            attachments.insert(name.clone(), attachment::attach(&mut world, &bodies, bodies[name], described, &site)?);
+        }
+        attachments.retain(|_, own| !own.is_empty());
         let mut instruments = IndexMap::new();
         for (name, described) in &file.instrument {
             let site = root.key("instrument").key(name);
@@ -99,6 +117,6 @@ impl Scene {
             }
             instruments.insert(name.clone(), instrument::add(&mut world, described, &site)?);
         }
-        Ok(BuiltScene { file, world, bodies, instruments, notices })
+        Ok(BuiltScene { file, world, bodies, attachments, instruments, notices })
     }
 }

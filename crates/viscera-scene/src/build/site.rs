@@ -1,7 +1,10 @@
+use std::borrow::Cow;
 use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::SceneErrors;
+use crate::files::Files;
 use crate::scene::Scene;
 
 /// A value of a scene, to point at when it turns out to be wrong while the world is built.
@@ -30,8 +33,24 @@ impl<'a> Site<'a> {
         self.scene.document.error_at(&path, message.to_string(), help).into()
     }
 
-    /// A file that the scene names.
+    /// Where a file that the scene names is looked for.
     pub(super) fn path(&self, file: &Path) -> PathBuf {
-        self.scene.path(file)
+        self.scene.files.path(file)
+    }
+
+    /// What is in it.
+    pub(super) fn read(&self, file: &Path) -> io::Result<Cow<'a, [u8]>> {
+        self.scene.files.read(file)
+    }
+
+    /// A mesh file, in memory or on disk: the disk's errors are the reader's to tell.
+    pub(super) fn in_memory(&self, file: &Path) -> Result<Option<Cow<'a, [u8]>>, SceneErrors> {
+        match &self.scene.files {
+            Files::Folder(_) => Ok(None),
+            Files::Memory(_) => {
+                let missing = |error| self.error(format!("cannot read {}: {error}", file.display()), "send it along");
+                self.read(file).map(Some).map_err(missing)
+            }
+        }
     }
 }

@@ -45,6 +45,9 @@ pub struct BodyFile {
     /// What is moved along a given way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub prescribe: Vec<PrescribeFile>,
+    /// Where it is grown to other bodies; the explicit integrator only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub attach: Vec<AttachFile>,
     /// What pulls and pushes on it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<LoadFile>,
@@ -89,6 +92,17 @@ pub struct SlideFile {
     /// How far along it they are from their place at rest [m]; by default they stay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement: Option<CurveFile<Length>>,
+}
+
+/// A region that is grown to another body: each of its nodes to the nearest place of the other's surface.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "attachment")]
+pub struct AttachFile {
+    /// Which nodes.
+    pub region: RegionFile,
+    /// Name of the other body.
+    pub to: String,
 }
 
 /// A region that is moved along a given way.

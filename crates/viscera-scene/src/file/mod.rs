@@ -19,9 +19,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Acceleration, Time};
 
-pub use body::{BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile, SlideFile};
+pub use body::{AttachFile, BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile, SlideFile};
 pub use curve::{CurveFile, CurvePath};
-pub use instrument::InstrumentFile;
+pub use instrument::{InstrumentFile, JawsFile, ShaftFile};
 pub use integrator::{
     FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile,
 };

@@ -63,6 +63,11 @@ impl<T: Scalar> NodalLoads<T> {
         Ok(Self { loads })
     }
 
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.loads.is_empty()
+    }
+
     /// Adds the loads at `time` [s] on nodes at `x` to `out`. Faces whose cell is removed carry nothing, and nodes that
     /// are retired are the integrator's business.
     pub(crate) fn add(&self, time: f64, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {

@@ -8,6 +8,7 @@ mod model_plan;
 mod removals;
 mod simulated;
 mod state;
+mod stress;
 
 pub use error::BodyError;
 pub(crate) use guide::Guides;
@@ -15,6 +16,7 @@ pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub(crate) use model_plan::{ModelPlan, Models};
 pub use removals::Removals;
+pub(crate) use simulated::free_directions;
 pub use simulated::{SimulatedBody, SurfaceTriangle};
 pub use state::{BodyState, NodeMotion, PastState};
 pub(crate) use state::{Driven, MotionBackup};

@@ -2,6 +2,7 @@ use super::{
     Body, BodyError, BodyState, Driven, Guides, LoosePieces, ModelPlan, Models, MotionBackup, NodalLoads, NodeMotion,
     PastState, Removals,
 };
+use crate::contact::Contacts;
 use crate::curve::Curve;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::material::LawKind;
@@ -50,6 +51,9 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) driven: Vec<Driven<T>>,
     pub(crate) backup: MotionBackup<T>,
     pub(crate) pieces: Vec<u32>,
+    /// Triangles of the surface as it is now, for tools that touch it; none without such tools.
+    pub(crate) skin: Vec<[u32; 3]>,
+    pub(crate) contacts: Contacts,
 }
 
 /// The faces that are, or may become, surface: triangles, and the cells on their two sides.
@@ -139,6 +143,8 @@ impl<T: Scalar> SimulatedBody<T> {
             driven: Vec::with_capacity(mesh.nodes().len()),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
+            skin: Vec::new(),
+            contacts: Contacts::default(),
             boundary: Boundary::new(&mesh),
             plan,
             name,
@@ -222,7 +228,40 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// The current surface, cut faces included.
     pub fn surface(&self) -> Vec<SurfaceTriangle> {
-        self.boundary.surface(&self.state.removed)
+        self.boundary.surface(&self.state.removed).collect()
+    }
+
+    /// The triangles of the current surface, and the cell behind each.
+    pub(crate) fn surface_cells(&self) -> impl Iterator<Item = ([u32; 3], u32)> + '_ {
+        let there = |cell: u32| !self.state.removed[cell as usize];
+        self.boundary.faces.iter().filter_map(move |face| match face.cells {
+            (first, second) if there(first) => (!second.is_some_and(there)).then_some((face.nodes, first)),
+            (_, second) => second.filter(|&cell| there(cell)).map(|cell| (face.nodes, cell)),
+        })
+    }
+
+    /// How far each node is burnt, from 0 to 1, which it is on the rim of a burnt cut.
+    pub fn seared(&self) -> &[T] {
+        &self.state.seared
+    }
+
+    /// Asks for the memory of `tools` tools; those that `touch` want to know the surface.
+    pub(crate) fn reserve_contacts(&mut self, tools: usize, touch: bool) {
+        let faces = if touch { self.boundary.faces.len() } else { 0 };
+        let triangles = self.boundary.surface(&self.state.removed).count().min(faces);
+        self.contacts.reserve(tools, triangles, faces);
+        self.state.tractions.reserve(triangles.saturating_sub(self.state.tractions.len()));
+        self.backup.reserve_tractions(triangles);
+        self.skin.reserve(faces.saturating_sub(self.skin.len()));
+        self.update_skin();
+    }
+
+    /// Brings the triangles that tools touch up to date with the cells that are left.
+    pub(crate) fn update_skin(&mut self) {
+        if self.skin.capacity() > 0 {
+            self.skin.clear();
+            self.skin.extend(self.boundary.surface(&self.state.removed).map(|triangle| triangle.nodes));
+        }
     }
 
     /// Asks for the memory of the state before the last step, for schemes over two steps, and for that of its backup.
@@ -296,7 +335,8 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
-fn free_directions<T: Scalar>(guides: &Guides, motion: NodeMotion) -> Filter<T> {
+/// The directions in which forces move a node.
+pub(crate) fn free_directions<T: Scalar>(guides: &Guides, motion: NodeMotion) -> Filter<T> {
     match motion {
         NodeMotion::Free => Filter::Free,
         NodeMotion::Guided(guide) => guides.filter(guide),
@@ -393,6 +433,9 @@ fn initial_state<T: Scalar>(
         forces_are_current: false,
         squared_frequency: None,
         past: PastState::default(),
+        tractions: Vec::new(),
+        heat: vec![T::ZERO; mesh.cell_count()],
+        seared: vec![T::ZERO; nodes],
     })
 }
 
@@ -411,9 +454,9 @@ impl Boundary {
         Self { faces }
     }
 
-    fn surface(&self, removed: &[bool]) -> Vec<SurfaceTriangle> {
+    fn surface<'a>(&'a self, removed: &'a [bool]) -> impl Iterator<Item = SurfaceTriangle> + 'a {
         let there = |cell: u32| !removed[cell as usize];
-        let triangle = |face: &Face| {
+        let triangle = move |face: &Face| {
             let [a, b, c] = face.nodes;
             let (first, second) = face.cells;
             match (there(first), second.map(there)) {
@@ -423,6 +466,6 @@ impl Boundary {
                 _ => None,
             }
         };
-        self.faces.iter().filter_map(triangle).collect()
+        self.faces.iter().filter_map(triangle)
     }
 }

@@ -1,6 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Removals;
+use crate::contact::Traction;
 use crate::math::{Scalar, Vec3};
 use crate::model::ForceModel;
 
@@ -43,7 +44,7 @@ pub struct BodyState<T: Scalar> {
     pub internal_forces: Vec<Vec3<T>>,
     /// How each node moves.
     pub motions: Vec<NodeMotion>,
-    /// Of held nodes: their place relative to the tip of the instrument [m].
+    /// Of held nodes: their place from the tip of the instrument, in its own axes [m].
     pub grips: Vec<Vec3<T>>,
     /// Lumped masses [kg].
     pub masses: Vec<T>,
@@ -64,6 +65,12 @@ pub struct BodyState<T: Scalar> {
     pub squared_frequency: Option<f64>,
     /// The state before the last step, for schemes over two steps.
     pub past: PastState<T>,
+    /// Friction of tools at the end of the last implicit step.
+    pub tractions: Vec<Traction>,
+    /// Heat that cells have taken in [J].
+    pub heat: Vec<T>,
+    /// How far nodes are burnt: 0 fresh, 1 on the rim of a burnt cut.
+    pub seared: Vec<T>,
 }
 
 /// Where a body was before the last step. Of no size unless the scheme asks for it.
@@ -115,8 +122,18 @@ impl<T: Scalar> Clone for BodyState<T> {
             forces_are_current: self.forces_are_current,
             squared_frequency: self.squared_frequency,
             past: self.past.clone(),
+            tractions: with_room(&self.tractions),
+            heat: self.heat.clone(),
+            seared: self.seared.clone(),
         }
     }
+}
+
+/// A copy with the same room: it may take the place of the original in a world that goes on.
+fn with_room(tractions: &Vec<Traction>) -> Vec<Traction> {
+    let mut copy = Vec::with_capacity(tractions.capacity());
+    copy.extend_from_slice(tractions);
+    copy
 }
 
 impl<T: Scalar> BodyState<T> {
@@ -150,6 +167,7 @@ pub(crate) struct MotionBackup<T> {
     forces_are_current: bool,
     squared_frequency: Option<f64>,
     past: PastState<T>,
+    tractions: Vec<Traction>,
 }
 
 impl<T: Scalar> MotionBackup<T> {
@@ -170,6 +188,12 @@ impl<T: Scalar> MotionBackup<T> {
         self.forces_are_current = state.forces_are_current;
         self.squared_frequency = state.squared_frequency;
         self.past.copy_from(&state.past);
+        self.tractions.clone_from(&state.tractions);
+    }
+
+    /// Asks for memory for so many more contacts.
+    pub(crate) fn reserve_tractions(&mut self, count: usize) {
+        self.tractions.reserve(count);
     }
 
     /// Positions that were kept [m].
@@ -187,5 +211,6 @@ impl<T: Scalar> MotionBackup<T> {
         state.forces_are_current = self.forces_are_current;
         state.squared_frequency = self.squared_frequency;
         state.past.copy_from(&self.past);
+        state.tractions.clone_from(&self.tractions);
     }
 }

@@ -1,6 +1,7 @@
 //! What changes the mesh while it runs: cells are removed, buffers keep their size.
 
 mod pieces;
+mod searing;
 
 use crate::body::{LoosePieces, NodeMotion, SimulatedBody};
 use crate::math::{Scalar, Vec3};
@@ -46,5 +47,6 @@ impl<T: Scalar> SimulatedBody<T> {
         }
         self.frequency.remove(cells);
         state.positions_changed();
+        self.update_skin();
     }
 }

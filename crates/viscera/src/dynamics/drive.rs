@@ -1,4 +1,5 @@
 use crate::body::{NodeMotion, SimulatedBody};
+use crate::contact::{MovingCapsule, ToolFrame};
 use crate::math::{Scalar, Vec3};
 
 /// What drives the nodes that forces do not move, over one step.
@@ -6,8 +7,10 @@ use crate::math::{Scalar, Vec3};
 pub struct Drive<'a, T> {
     /// Time at the end of the step [s].
     pub end: f64,
-    /// Tips of the instruments at that time [m].
-    pub tips: &'a [Vec3<f64>],
+    /// How the instruments move over the step.
+    pub frames: &'a [ToolFrame],
+    /// Their rigid parts, which tissue does not pass.
+    pub rods: &'a [MovingCapsule],
     /// Gravity [m/s²].
     pub gravity: Vec3<T>,
 }
@@ -24,7 +27,9 @@ impl<T: Scalar> Drive<'_, T> {
                 Some(body.rest[node] + body.prescribed[curve as usize].at(self.end).cast())
             }
             NodeMotion::Guided(guide) => Some(body.rest[node] + body.guides.displacement(guide, self.end).cast()),
-            NodeMotion::Held(instrument) => Some(state.grips[node] + self.tips[instrument as usize].cast()),
+            NodeMotion::Held(instrument) => {
+                Some(self.frames[instrument as usize].at_end(state.grips[node].cast()).cast())
+            }
         }
     }
 }

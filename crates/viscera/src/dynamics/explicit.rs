@@ -13,7 +13,9 @@
 use fearless_simd::dispatch;
 
 use super::Drive;
-use crate::body::{Driven, NodeMotion, SimulatedBody};
+use super::hold::Held;
+use crate::body::{Driven, NodeMotion, SimulatedBody, free_directions};
+use crate::contact::{Contacts, Nodes};
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch_level};
 use crate::model::Scratch;
@@ -63,13 +65,73 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
+/// Prepares a body for the sub-steps of a step, over which the motions of nodes stay as they are: forces of its beginning, and the
+/// nodes that are not free.
+pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, time: f64, gravity: Vec3<T>, stages: Stages) {
+    body.update_internal_forces(stages);
+    stages.run(Stage::Loads, || body.update_external_forces(time, gravity));
+    let others = body.state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
+    body.driven.clear();
+    body.driven.extend(others.map(|(node, _)| Driven { node, position: Vec3::ZERO, velocity: Vec3::ZERO }));
+}
+
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
 pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
+    drift(body, dt, drive, stages);
+    kick(body, dt, drive, stages);
+}
+
+/// The first half of a sub-step of `dt` [s]: a kick, the drift, and what tools do about it. Internal and external forces must be those
+/// of its beginning.
+pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     stages.run(Stage::KickAndDrift, || kick_and_drift(body, dt, drive));
+    if !drive.rods.is_empty() {
+        stages.run(Stage::Instruments, || meet_tools(body, dt, drive));
+    }
     body.state.positions_changed();
+}
+
+/// The second half: the kick by the forces at the new places.
+pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     body.update_internal_forces(stages);
-    stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
-    stages.run(Stage::KickAndDrift, || kick(body, dt));
+    // Weights do not change within a step.
+    if !body.loads.is_empty() {
+        stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
+    }
+    stages.run(Stage::KickAndDrift, || kick_again(body, dt, drive));
+    if !body.contacts.is_empty() {
+        stages.run(Stage::Instruments, || {
+            let damping = 1.0 + 0.5 * dt * body.damping.to_f64();
+            let (contacts, mut nodes) = touched(body);
+            contacts.solve_kick(&mut nodes, drive.rods, dt, damping);
+        });
+    }
+}
+
+/// Finds where tools touch in the drift, and gives the impulses that keep them out.
+fn meet_tools<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
+    let (state, step) = (&body.state, T::from_f64(dt));
+    let places = |node: u32| {
+        let (end, velocity) = (state.positions[node as usize], state.velocities[node as usize]);
+        ((end - velocity * step).cast(), end.cast())
+    };
+    body.contacts.clear();
+    if body.contacts.find(drive.rods, &body.skin, drive.frames, places) {
+        let (contacts, mut nodes) = touched(body);
+        contacts.solve_drift(&mut nodes, drive.rods, dt);
+    }
+}
+
+/// The contacts of a body, and the nodes that they move.
+fn touched<T: Scalar>(body: &mut SimulatedBody<T>) -> (&mut Contacts, Nodes<'_, T, impl Fn(u32) -> Filter<T>>) {
+    let (guides, motions) = (&body.guides, &body.state.motions);
+    let nodes = Nodes {
+        positions: &mut body.state.positions,
+        velocities: &mut body.state.velocities,
+        masses: &body.state.masses,
+        filter: |node: u32| free_directions(guides, motions[node as usize]),
+    };
+    (&mut body.contacts, nodes)
 }
 
 /// First half: v_½ and x⁺, and driven nodes to where they must be.
@@ -81,6 +143,10 @@ fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive
     });
     for i in 0..body.driven.len() {
         let Driven { node, position, .. } = body.driven[i];
+        if let NodeMotion::Held(tool) = body.state.motions[node] {
+            body.carry(Held { node, tool: tool as usize, position }, drive, dt);
+            continue;
+        }
         let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
         let Some(target) = target else { continue };
         let velocity = filter.merge(body.state.velocities[node], (target - position) / step);
@@ -90,7 +156,7 @@ fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive
 }
 
 /// Second half: v⁺ from the forces at x⁺.
-fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
+fn kick_again<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
     let half = T::from_f64(0.5 * dt);
     let damped = T::ONE / (T::ONE + half * body.damping);
     keep_driven(body);
@@ -98,18 +164,21 @@ fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64) {
         dispatch!(dispatch_level(), _simd => kick_freely(v, accelerations, half, damped));
     });
     for i in 0..body.driven.len() {
-        let Driven { node, velocity, .. } = body.driven[i];
+        let Driven { node, velocity, position } = body.driven[i];
+        if let NodeMotion::Held(tool) = body.state.motions[node] {
+            body.keep_carrying(Held { node, tool: tool as usize, position }, velocity, drive, dt);
+            continue;
+        }
         body.state.velocities[node] = body.free_directions(node).merge(body.state.velocities[node], velocity);
     }
 }
 
-/// Remembers the nodes that are not free.
+/// Remembers where the nodes are that are not free, and how fast.
 fn keep_driven<T: Scalar>(body: &mut SimulatedBody<T>) {
-    let state = &body.state;
-    body.driven.clear();
-    let others = state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
-    let kept = |(node, _)| Driven { node, position: state.positions[node], velocity: state.velocities[node] };
-    body.driven.extend(others.map(kept));
+    for driven in &mut body.driven {
+        driven.position = body.state.positions[driven.node];
+        driven.velocity = body.state.velocities[driven.node];
+    }
 }
 
 /// External forces, internal forces and masses of a block of nodes: what (R − F)/m comes from.

@@ -2,6 +2,7 @@
 
 mod drive;
 pub mod explicit;
+mod hold;
 pub mod implicit;
 pub mod quasi_static;
 

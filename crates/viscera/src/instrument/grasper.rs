@@ -1,18 +1,48 @@
-use super::{Instrument, InstrumentError, Path, Span, check_radius};
-use crate::body::{NodeMotion, SimulatedBody};
+use super::{Instrument, InstrumentError, Jaws, Mount, Path, Shaft, ToolPose, check_friction, check_length};
+use crate::contact::Capsule;
+use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
+use crate::mesh::Point;
 
 /// Jaws that take the nodes between them when they close and carry them along until they open.
+///
+/// A node that needs more than its share of the grip to be carried slips through the jaws, and is dragged with that share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grasper {
     /// Where the jaws are.
     pub path: Path,
-    /// The jaws reach this far from the tip [m, > 0].
+    /// How they are led along the path.
+    pub mount: Mount,
+    /// The jaws hold what is this near to them, from hinge to tip [m, > 0]; 10 mm by default.
     pub radius: f64,
-    /// When they close [s].
+    /// When they close [s]; never by default: for a hand that pulls the trigger.
     pub close: f64,
     /// When they open [s], if they do; after `close`.
     pub open: Option<f64>,
+    /// The jaws, as rods that touch tissue until they hold some; without them the tip alone takes hold, and touches nothing.
+    pub jaws: Option<Jaws>,
+    /// The shaft behind the jaws, where it may touch tissue.
+    pub shaft: Option<Shaft>,
+    /// Coefficient of friction of jaws and shaft [≥ 0]; 0.1 by default.
+    pub friction: f64,
+    /// The most force with which the jaws hold, over all nodes between them [N, > 0]; without bound by default.
+    pub grip: f64,
+}
+
+impl Default for Grasper {
+    fn default() -> Self {
+        Self {
+            path: Curve::constant(Vec3::ZERO),
+            mount: Mount::default(),
+            radius: 0.01,
+            close: f64::INFINITY,
+            open: None,
+            jaws: None,
+            shaft: None,
+            friction: 0.1,
+            grip: f64::INFINITY,
+        }
+    }
 }
 
 impl<T: Scalar> Instrument<T> for Grasper {
@@ -24,53 +54,63 @@ impl<T: Scalar> Instrument<T> for Grasper {
         &self.path
     }
 
+    fn mount(&self) -> &Mount {
+        &self.mount
+    }
+
     fn reach(&self) -> f64 {
         self.radius
     }
 
     fn check(&self) -> Result<(), InstrumentError> {
-        check_radius("grasper", self.radius)?;
-        match self.open.filter(|&open| open.is_nan() || open <= self.close) {
-            Some(value) => Err(InstrumentError::OutOfRange {
-                kind: "grasper",
-                name: "open",
-                value,
-                range: "later than `close` [s]",
-            }),
-            None => Ok(()),
+        let out_of_range =
+            |name, value, range| Err(InstrumentError::OutOfRange { kind: "grasper", name, value, range });
+        check_length("grasper", "radius", self.radius)?;
+        if let Some(open) = self.open.filter(|&open| open.is_nan() || open <= self.close) {
+            return out_of_range("open", open, "later than `close` [s]");
+        }
+        if self.grip.is_nan() || self.grip <= 0.0 {
+            return out_of_range("grip", self.grip, "positive [N]");
+        }
+        self.mount.check("grasper")?;
+        self.jaws.map_or(Ok(()), |jaws| jaws.check("grasper"))?;
+        self.shaft.map_or(Ok(()), |shaft| shaft.check("grasper"))?;
+        check_friction("grasper", self.friction)
+    }
+
+    fn add_parts(&self, pose: &ToolPose, trigger: f64, parts: &mut Vec<Capsule>) {
+        if let Some(shaft) = self.shaft {
+            parts.push(shaft.capsule(pose, self.jaws.map_or(0.0, |jaws| jaws.length)));
+        }
+        if let Some(jaws) = self.jaws {
+            parts.extend(jaws.capsules(pose, trigger));
         }
     }
 
-    fn grip(&self, number: u32, span: &Span, bodies: &mut [SimulatedBody<T>]) {
-        if span.contains(self.close) {
-            let tip = self.path.at(span.from);
-            bodies.iter_mut().for_each(|body| take_hold(body, number, tip, self.radius));
-        }
-        if self.open.is_some_and(|open| span.contains(open)) {
-            bodies.iter_mut().for_each(|body| let_go(body, number));
-        }
+    fn parts_that_hold(&self) -> usize {
+        if self.jaws.is_some() { 2 } else { 0 }
+    }
+
+    fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    fn grip(&self) -> f64 {
+        self.grip
+    }
+
+    fn takes_hold_of(&self, pose: &ToolPose, place: Point) -> bool {
+        let from_tip = place - pose.tip;
+        let length = self.jaws.map_or(0.0, |jaws| jaws.length);
+        let behind = (-from_tip.dot(pose.direction)).clamp(0.0, length);
+        (from_tip + pose.direction * behind).squared_norm() <= self.radius * self.radius
     }
 
     fn is_active(&self, time: f64) -> bool {
         self.close <= time && self.open.is_none_or(|open| time < open)
     }
-}
 
-fn take_hold<T: Scalar>(body: &mut SimulatedBody<T>, number: u32, tip: Vec3<f64>, radius: f64) {
-    let state = &mut body.state;
-    for node in 0..state.positions.len() {
-        let from_tip = state.positions[node].cast::<f64>() - tip;
-        if state.motions[node] == NodeMotion::Free && from_tip.squared_norm() <= radius * radius {
-            state.motions[node] = NodeMotion::Held(number);
-            state.grips[node] = from_tip.cast();
-        }
-    }
-}
-
-fn let_go<T: Scalar>(body: &mut SimulatedBody<T>, number: u32) {
-    for motion in &mut body.state.motions {
-        if *motion == NodeMotion::Held(number) {
-            *motion = NodeMotion::Free;
-        }
+    fn is_active_before(&self, time: f64) -> bool {
+        self.close < time && self.open.is_none_or(|open| time <= open)
     }
 }

@@ -26,7 +26,7 @@ pub use error::MeshError;
 pub use gauss::{GaussPoint, GaussRule, hexahedron_volume};
 pub use generate::{CubeCut, GenerateError, Liver, TubeDivisions};
 pub use mesh_report::MeshReport;
-pub use quality::{QualityReport, Spread, TetQuality, scaled_jacobian};
+pub use quality::{QualityReport, Spread, TetQuality, radius_ratio, scaled_jacobian};
 pub use region::NamedRegion;
 pub use select::{LoadTriangle, Region, RegionError};
 pub use signed_distance::SignedDistance;

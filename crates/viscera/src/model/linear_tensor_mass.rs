@@ -7,8 +7,10 @@
 
 use std::sync::Arc;
 
+use super::sections::SectionScratch;
 use super::tensor_mass::{EntityLoop, Frame, LinearEdge, LinearVertex, RestShape};
 use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use crate::executor::{NodeBlocks, ReadBlocks, node_blocks};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -83,10 +85,11 @@ struct LinearModel<T: Scalar> {
 }
 
 impl<T: Scalar> LinearModel<T> {
-    /// f = K u for the displacements in `nodal`.
-    fn add_stiffness_times(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
-        self.vertices.add_forces::<false>(nodal, out);
-        self.edges.add_forces::<false>(nodal, out);
+    /// f = K u for the displacements in the scratch's places.
+    fn add_stiffness_times(&self, scratch: &mut Scratch<T>) {
+        let SectionScratch { nodal, mut sums, .. } = scratch.sections(self.sum_rows());
+        self.vertices.add_forces::<false>(nodal, &mut sums);
+        self.edges.add_forces::<false>(nodal, &mut sums);
     }
 }
 
@@ -97,21 +100,26 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
         let frame = Frame::along(x);
-        for (row, (x, arm)) in nodal.iter_mut().zip(x.iter().zip(&self.arms)) {
-            let u = frame.displacement(*x, *arm);
-            *row = [u.x, u.y, u.z, T::ONE];
-        }
-        self.add_stiffness_times(nodal, forces);
+        let data = (NodeBlocks(&mut scratch.nodal), (ReadBlocks(x), ReadBlocks(&self.arms)));
+        scratch.executor.each(node_blocks(x.len()), data, &|_, (nodal, (x, arms))| {
+            for (row, (x, arm)) in nodal.0.iter_mut().zip(x.0.iter().zip(arms.0)) {
+                let u = frame.displacement(*x, *arm);
+                *row = [u.x, u.y, u.z, T::ONE];
+            }
+        });
+        self.add_stiffness_times(scratch);
         scratch.finish(out);
     }
 
     fn add_product(&self, _x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(dx);
-        let Scratch { nodal, forces, .. } = scratch;
-        self.add_stiffness_times(nodal, forces);
+        self.add_stiffness_times(scratch);
         scratch.finish(out);
+    }
+
+    fn sum_rows(&self) -> usize {
+        self.vertices.sum_rows().max(self.edges.sum_rows())
     }
 
     fn add_blocks(&self, _x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {

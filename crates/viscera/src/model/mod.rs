@@ -10,6 +10,7 @@ pub mod nodally_integrated;
 mod patch;
 mod precision;
 mod registry;
+mod sections;
 pub mod tensor_mass;
 mod tet_loop;
 pub mod total_lagrangian;
@@ -28,6 +29,7 @@ pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
 use self::frequency::{FrequencyBound, frequency_bound};
+use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
 use crate::material::Tissue;
 use crate::math::{Mat3, Scalar, Vec3};
@@ -167,9 +169,19 @@ impl<T: Scalar> Scratch<T> {
         (Sums { executor: &self.executor, rows: &mut self.sums[..len] }, &self.linearization)
     }
 
+    /// What loops in sections read, with `len` rows to sum in on the way to the forces; scratch made for the body's models has the
+    /// room already.
+    pub(crate) fn sections(&mut self, len: usize) -> SectionScratch<'_, T> {
+        if self.sums.len() < len {
+            self.sums.resize(len, [T::ZERO; 4]);
+        }
+        let Self { nodal, direction, forces, sums: rows, linearization, executor, .. } = self;
+        SectionScratch { nodal, direction, linearization, sums: SectionSums { executor, rows, forces } }
+    }
+
     /// Fills the places with `x` and clears the forces.
     pub(crate) fn start(&mut self, x: &[Vec3<T>]) {
-        fill(&mut self.nodal, x);
+        fill(&self.executor, &mut self.nodal, x);
         self.clear_forces();
     }
 
@@ -180,7 +192,7 @@ impl<T: Scalar> Scratch<T> {
 
     /// Fills the directions with `dx`.
     pub(crate) fn start_direction(&mut self, dx: &[Vec3<T>]) {
-        fill(&mut self.direction, dx);
+        fill(&self.executor, &mut self.direction, dx);
     }
 
     /// Room for `len` numbers that a model keeps; scratch made for the body's models has it already.
@@ -199,10 +211,7 @@ impl<T: Scalar> Scratch<T> {
 
     /// Adds the forces to `out`.
     pub(crate) fn finish(&self, out: &mut [Vec3<T>]) {
-        assert_eq!(self.forces.len(), out.len(), "arrays and scratch must be those of the model's mesh");
-        for (out, &[x, y, z, _]) in out.iter_mut().zip(&self.forces) {
-            *out += Vec3::new(x, y, z);
-        }
+        add_rows(&self.executor, &self.forces, out);
     }
 }
 
@@ -210,13 +219,6 @@ impl<T: Scalar> Scratch<T> {
 pub(crate) struct Sums<'a, T> {
     pub(crate) executor: &'a Executor,
     pub(crate) rows: &'a mut [[T; 4]],
-}
-
-fn fill<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
-    assert_eq!(rows.len(), vectors.len(), "arrays and scratch must be those of the model's mesh");
-    for (row, v) in rows.iter_mut().zip(vectors) {
-        *row = [v.x, v.y, v.z, T::ZERO];
-    }
 }
 
 /// What is needed to build a model for a mesh: what the user writes.

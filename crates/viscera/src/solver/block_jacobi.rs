@@ -36,30 +36,30 @@ impl<T: Scalar> BlockJacobi<T> {
         &mut self.blocks
     }
 
-    /// Inverts the blocks `scale` K + `masses` I [kg/s²]. Where that is not positive definite (tissue under compression), the
-    /// mass alone stands in: a preconditioner has to be positive definite, whatever the matrix is.
+    /// Inverts the blocks K + `masses` I [kg/s²]. Where that is not positive definite (tissue under compression), the mass alone
+    /// stands in: a preconditioner has to be positive definite, whatever the matrix is.
     ///
     /// The `filters` go into the inverses, S P⁻¹ S, so that nothing across them counts.
-    pub fn invert(&mut self, scale: T, masses: impl Iterator<Item = T>, filters: &[Filter<T>]) {
-        for (node, (block, mass)) in self.blocks.iter().zip(masses).enumerate() {
-            let sum = *block * scale + Mat3::diagonal(mass);
-            let inverse = if is_positive_definite(&sum) {
-                sum.inverse()
-            } else if mass > T::ZERO {
-                Mat3::diagonal(T::ONE / mass)
-            } else {
-                Mat3::IDENTITY
-            };
-            let columns = |block: Mat3<T>| Mat3 { columns: block.columns.map(|column| filters[node].apply(column)) };
-            let inverse = match filters[node] {
-                Filter::Free => inverse,
-                _ => columns(columns(inverse).transpose()),
-            };
-            let Sym3 { xx, yy, zz, xy, xz, yz } = inverse.symmetric_part();
-            for (numbers, number) in self.inverses.iter_mut().zip([xx, yy, zz, xy, xz, yz]) {
-                numbers[node] = number;
-            }
-        }
+    pub fn invert(&mut self, masses: &[T], filters: &[Filter<T>], executor: &Executor) {
+        let [xx, yy, zz, xy, xz, yz] = self.inverses.each_mut().map(|numbers| NodeBlocks(numbers.as_mut_slice()));
+        let blocks = ReadBlocks(&self.blocks[..]);
+        let data = (((xx, yy), (zz, xy)), ((xz, yz), blocks));
+        executor.each(
+            node_blocks(masses.len()),
+            data,
+            &|block, (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(blocks)))| {
+                let first = block * NODE_BLOCK;
+                for (node, block) in blocks.iter().enumerate() {
+                    let inverse = inverse(block, masses[first + node], &filters[first + node]);
+                    xx.0[node] = inverse.xx;
+                    yy.0[node] = inverse.yy;
+                    zz.0[node] = inverse.zz;
+                    xy.0[node] = inverse.xy;
+                    xz.0[node] = inverse.xz;
+                    yz.0[node] = inverse.yz;
+                }
+            },
+        );
     }
 
     /// P⁻¹ r of a node.
@@ -110,6 +110,23 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
             r.iter().enumerate().map(square).sum::<f64>()
         };
         executor.fold(node_blocks(residual.len()), ReadBlocks(residual), &work, &|a, b| a + b).unwrap_or(0.0)
+    }
+}
+
+/// S (`block` + `mass` I)⁻¹ S, or S / `mass` where there is no positive definite inverse.
+fn inverse<T: Scalar>(block: &Mat3<T>, mass: T, filter: &Filter<T>) -> Sym3<T> {
+    let sum = *block + Mat3::diagonal(mass);
+    let inverse = if is_positive_definite(&sum) {
+        sum.inverse()
+    } else if mass > T::ZERO {
+        Mat3::diagonal(T::ONE / mass)
+    } else {
+        Mat3::IDENTITY
+    };
+    let columns = |block: Mat3<T>| Mat3 { columns: block.columns.map(|column| filter.apply(column)) };
+    match filter {
+        Filter::Free => inverse.symmetric_part(),
+        _ => columns(columns(inverse).transpose()).symmetric_part(),
     }
 }
 

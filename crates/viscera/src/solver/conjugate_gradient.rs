@@ -6,9 +6,9 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::vectors::{add_scaled, dot, scale_and_add};
+use super::vectors::{dot, scale_and_add, step_along};
 use super::{Filter, LinearOperator, Preconditioner, Size};
-use crate::executor::Executor;
+use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 
 /// When the iteration ends.
@@ -149,8 +149,7 @@ impl<T: Scalar> ConjugateGradient<T> {
                 break;
             }
             let length = T::from_f64(size.corrected / curvature);
-            add_scaled(executor, x, length, &self.direction);
-            add_scaled(executor, &mut self.residual, -length, &self.product);
+            step_along(executor, (x, &mut self.residual), length, (&self.direction, &self.product));
             size = self.precondition(matrix, preconditioner, problem, Some(size));
             self.note(size.squared_norm, scale);
         }
@@ -168,18 +167,23 @@ impl<T: Scalar> ConjugateGradient<T> {
         problem: &Problem<'_, T>,
         x: &mut [Vec3<T>],
     ) -> f64 {
-        for node in 0..x.len() {
-            x[node] = problem.filters[node].merge(x[node], problem.prescribed[node]);
-        }
+        let parts = node_blocks(x.len());
+        let executor = problem.executor;
+        executor.each(parts, NodeBlocks(x), &|block, NodeBlocks(x)| {
+            let nodes = block * NODE_BLOCK..;
+            let known = problem.filters[nodes.clone()].iter().zip(&problem.prescribed[nodes]);
+            x.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
+        });
         matrix.apply(x, &mut self.product);
         self.residual.copy_from_slice(problem.rhs);
         filter(&self.filtered, problem.filters, &mut self.residual);
         filter(&self.filtered, problem.filters, &mut self.product);
-        let of_rhs = preconditioner.squared_norm(&self.residual, problem.executor);
-        let of_product = preconditioner.squared_norm(&self.product, problem.executor);
-        for (residual, &product) in self.residual.iter_mut().zip(&self.product) {
-            *residual -= product;
-        }
+        let of_rhs = preconditioner.squared_norm(&self.residual, executor);
+        let of_product = preconditioner.squared_norm(&self.product, executor);
+        let data = (NodeBlocks(&mut self.residual), ReadBlocks(&self.product));
+        executor.each(parts, data, &|_, (NodeBlocks(r), ReadBlocks(product))| {
+            r.iter_mut().zip(product).for_each(|(r, &product)| *r -= product);
+        });
         of_rhs.sqrt() + of_product.sqrt()
     }
 

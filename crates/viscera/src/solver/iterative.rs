@@ -48,7 +48,7 @@ impl LinearSolver for Iterative {
             for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
                 *block = system.matrix.block(node, node);
             }
-            preconditioner.invert(1.0, std::iter::repeat_n(0.0, system.nodes()), &system.filters);
+            preconditioner.invert(&vec![0.0; system.nodes()], &system.filters, &Executor::serial());
         }
         Ok(())
     }

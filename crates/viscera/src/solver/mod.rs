@@ -21,7 +21,7 @@ pub use linear_solver::{LinearSolver, SolverError};
 pub use multigrid::{Cycle, Multigrid};
 pub use preconditioner::{Preconditioner, Size};
 pub use system::System;
-pub(crate) use vectors::{dot, scale_and_add_masses};
+pub(crate) use vectors::{add_weighted, dot, set_weighted};
 
 use crate::math::{Scalar, Vec3};
 

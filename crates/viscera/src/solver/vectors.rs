@@ -18,13 +18,27 @@ pub(crate) fn dot<T: Scalar>(executor: &Executor, a: &[Vec3<T>], b: &[Vec3<T>]) 
     executor.fold(node_blocks(a.len()), (ReadBlocks(a), ReadBlocks(b)), &work, &|a, b| a + b).unwrap_or(0.0)
 }
 
-/// y ← y + s x.
-pub(crate) fn add_scaled<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], s: T, x: &[Vec3<T>]) {
-    let work = |_, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
-        dispatch!(dispatch_level(), _simd => combine_into(y, T::ONE, s, x));
+/// x ← x + s p and r ← r − s q: a step of the conjugate gradient.
+pub(crate) fn step_along<T: Scalar>(
+    executor: &Executor,
+    (x, r): (&mut [Vec3<T>], &mut [Vec3<T>]),
+    s: T,
+    (p, q): (&[Vec3<T>], &[Vec3<T>]),
+) {
+    let parts = node_blocks(x.len());
+    let data = ((NodeBlocks(x), NodeBlocks(r)), (ReadBlocks(p), ReadBlocks(q)));
+    let work = |_, ((NodeBlocks(x), NodeBlocks(r)), (ReadBlocks(p), ReadBlocks(q))): Pairs<'_, T>| {
+        dispatch!(dispatch_level(), _simd => {
+            combine_into(x, T::ONE, s, p);
+            combine_into(r, T::ONE, -s, q);
+        });
     };
-    executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
+    executor.each(parts, data, &work);
 }
+
+/// Two arrays to write and two to read.
+type Pairs<'a, T> =
+    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (ReadBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>));
 
 /// y ← s y + x.
 pub(crate) fn scale_and_add<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], s: T, x: &[Vec3<T>]) {
@@ -34,17 +48,20 @@ pub(crate) fn scale_and_add<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], s
     executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
 }
 
-/// y ← s y + m x, with a number m for each node.
-pub(crate) fn scale_and_add_masses<T: Scalar>(
-    executor: &Executor,
-    y: &mut [Vec3<T>],
-    s: T,
-    masses: &[T],
-    x: &[Vec3<T>],
-) {
+/// y ← m x, with a number m for each node.
+pub(crate) fn set_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m: &[T], x: &[Vec3<T>]) {
     let work = |block: usize, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
-        let masses = &masses[block * NODE_BLOCK..];
-        dispatch!(dispatch_level(), _simd => combine_masses_into(y, s, masses, x));
+        let m = &m[block * NODE_BLOCK..];
+        dispatch!(dispatch_level(), _simd => y.iter_mut().zip(x).zip(m).for_each(|((y, &x), &m)| *y = x * m));
+    };
+    executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
+}
+
+/// y ← y + m x, with a number m for each node.
+pub(crate) fn add_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m: &[T], x: &[Vec3<T>]) {
+    let work = |block: usize, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
+        let m = &m[block * NODE_BLOCK..];
+        dispatch!(dispatch_level(), _simd => y.iter_mut().zip(x).zip(m).for_each(|((y, &x), &m)| *y = x.mul_add(m, *y)));
     };
     executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
 }
@@ -69,14 +86,6 @@ pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
 fn combine_into<T: Scalar>(y: &mut [Vec3<T>], s: T, t: T, x: &[Vec3<T>]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = x.mul_add(t, *y * s);
-    }
-}
-
-/// y ← s y + m x.
-#[inline(always)]
-fn combine_masses_into<T: Scalar>(y: &mut [Vec3<T>], s: T, masses: &[T], x: &[Vec3<T>]) {
-    for ((y, &x), &mass) in y.iter_mut().zip(x).zip(masses) {
-        *y = x.mul_add(mass, *y * s);
     }
 }
 

@@ -60,9 +60,57 @@ pub enum WorldError {
         /// How many cells there are.
         cells: usize,
     },
+    /// Implicit steps solve the equations of one body after the other, so that none feels another one within a step.
+    #[error(
+        "body `{body}` cannot be attached to `{to}` in implicit steps, which move one body after the other; take the explicit \
+         integrator, or make one mesh of the two"
+    )]
+    AttachmentNeedsExplicit {
+        /// Name of the body that was to be attached.
+        body: String,
+        /// Name of the body to which.
+        to: String,
+    },
+    /// A body that is to be attached to itself.
+    #[error("body `{body}` cannot be attached to itself; name two bodies")]
+    AttachedToItself {
+        /// Name of the body.
+        body: String,
+    },
+    /// A node that is to be attached is nowhere near the other surface.
+    #[error(
+        "node {node} of body `{body}` is {distance:.3e} m from the surface of `{to}`, whose triangle there has edges of \
+         {edge:.3e} m; attach a region that lies on it, or move the bodies together"
+    )]
+    TooFarToAttach {
+        /// Name of the body that was to be attached.
+        body: String,
+        /// Name of the body to which.
+        to: String,
+        /// The node.
+        node: u32,
+        /// How far it is [m].
+        distance: f64,
+        /// Longest edge of the nearest triangle [m].
+        edge: f64,
+    },
+    /// An instrument that is not there: it was taken out, or is of another world.
+    #[error("there is no instrument {instrument}; it was taken out, or belongs to another world")]
+    MissingInstrument {
+        /// Its number.
+        instrument: usize,
+    },
     /// The snapshot is of a world with other bodies or instruments.
     #[error("the snapshot belongs to a world with other bodies or instruments; restore it there")]
     ForeignSnapshot,
+    /// A world cannot go on from another one whose body has other nodes or cells.
+    #[error(
+        "body `{body}` has another mesh there: only bodies with the same nodes and cells can go on from one another"
+    )]
+    OtherMesh {
+        /// Name of the body.
+        body: String,
+    },
     /// The body makes no sense.
     #[error(transparent)]
     Body(#[from] BodyError),

@@ -1,5 +1,6 @@
 //! The world: bodies, instruments, a clock.
 
+mod attachment;
 mod config;
 mod error;
 mod observables;
@@ -7,7 +8,10 @@ mod snapshot;
 mod statics;
 mod step;
 mod step_implicit;
+mod succession;
+mod tools;
 
+pub use attachment::{Attachment, AttachmentId};
 pub use config::{Integrator, Substep, WorldConfig};
 pub use error::{StepError, WorldError};
 pub use observables::{BodyObservables, InsideOut, InstrumentObservables};
@@ -16,9 +20,11 @@ pub use step::StepReport;
 
 use crate::body::{Body, SimulatedBody};
 use crate::dynamics::implicit::ImplicitMemory;
-use crate::instrument::Instrument;
-use crate::math::{Scalar, Vec3};
+use crate::instrument::{Instrument, ToolState};
+use crate::math::Scalar;
 use crate::model::Precision;
+use attachment::Ties;
+use tools::ToolMotion;
 
 /// Number of a body in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,11 +40,14 @@ pub struct World<T: Scalar> {
     bodies: Vec<SimulatedBody<T>>,
     /// Memory of implicit steps, one for each body; none if the world moves explicitly.
     implicit: Vec<ImplicitMemory<T>>,
-    instruments: Vec<Box<dyn Instrument<T>>>,
+    /// Instruments; nothing in the place of one that was taken out.
+    instruments: Vec<Option<Box<dyn Instrument<T>>>>,
+    /// The instruments as they are now.
+    tools: Vec<ToolState>,
+    motion: ToolMotion,
+    attachments: Vec<Ties>,
     /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
     steps: u64,
-    /// Tips of the instruments [m].
-    tips: Vec<Vec3<f64>>,
     /// Memory for the cells that an instrument removes.
     removable: Vec<u32>,
 }
@@ -55,8 +64,10 @@ impl<T: Scalar> World<T> {
             bodies: Vec::new(),
             implicit: Vec::new(),
             instruments: Vec::new(),
+            tools: Vec::new(),
+            motion: ToolMotion::default(),
+            attachments: Vec::new(),
             steps: 0,
-            tips: Vec::new(),
             removable: Vec::new(),
         })
     }
@@ -82,18 +93,8 @@ impl<T: Scalar> World<T> {
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
         self.bodies.push(body);
+        self.reserve_for_tools();
         Ok(BodyId(self.bodies.len() - 1))
-    }
-
-    /// Adds an instrument.
-    ///
-    /// # Errors
-    /// [`WorldError::Instrument`] where its settings make no sense.
-    pub fn add_instrument(&mut self, instrument: impl Instrument<T> + 'static) -> Result<InstrumentId, WorldError> {
-        instrument.check()?;
-        self.tips.push(instrument.path().at(self.time()));
-        self.instruments.push(Box::new(instrument));
-        Ok(InstrumentId(self.instruments.len() - 1))
     }
 
     /// Settings of the world.
@@ -116,9 +117,10 @@ impl<T: Scalar> World<T> {
         (0..self.bodies.len()).map(BodyId)
     }
 
-    /// Numbers of all instruments.
-    pub fn instrument_ids(&self) -> impl Iterator<Item = InstrumentId> + use<T> {
-        (0..self.instruments.len()).map(InstrumentId)
+    /// Numbers of the instruments that are there.
+    pub fn instrument_ids(&self) -> impl Iterator<Item = InstrumentId> + '_ {
+        let present = self.instruments.iter().enumerate().filter(|(_, instrument)| instrument.is_some());
+        present.map(|(number, _)| InstrumentId(number))
     }
 
     /// A body of this world. Panics for a number of another world.
@@ -136,9 +138,9 @@ impl<T: Scalar> World<T> {
         &mut self.bodies[id.0]
     }
 
-    /// An instrument of this world. Panics for a number of another world.
+    /// An instrument of this world. Panics for a number of another world, and for one that was taken out.
     pub fn instrument(&self, id: InstrumentId) -> &dyn Instrument<T> {
-        self.instruments[id.0].as_ref()
+        self.instruments[id.0].as_deref().expect("the instrument was not taken out")
     }
 
     /// Removes cells of a body now, between two steps; cells that are gone already are passed over. Gives how many went,

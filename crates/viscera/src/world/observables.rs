@@ -2,10 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{BodyId, InstrumentId, World};
 use crate::body::{NodeMotion, SimulatedBody};
-use crate::instrument::holding_force;
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::{TetQuality, VolumeMesh, scaled_jacobian};
+use crate::mesh::{VolumeMesh, radius_ratio, scaled_jacobian};
 use crate::stage::Stages;
 
 /// A body counts as at rest when its kinetic energy is below this share of its elastic energy.
@@ -88,8 +87,12 @@ pub struct InstrumentObservables {
     pub active: bool,
     /// Nodes that it holds.
     pub held_nodes: usize,
-    /// Force by which it holds them [N], apart from the inertia of the held nodes themselves.
+    /// Force on the tissue [N], the mean over the last step: what carries the held nodes, their inertia included, contact and friction.
     pub force: Vec3<f64>,
+    /// Moment of that force about the tip [N m].
+    pub torque: Vec3<f64>,
+    /// Points at which it touches tissue.
+    pub contacts: usize,
 }
 
 impl<T: Scalar> World<T> {
@@ -101,15 +104,15 @@ impl<T: Scalar> World<T> {
     }
 
     /// Measures an instrument now. Panics for a number of another world.
-    pub fn observe_instrument(&mut self, id: InstrumentId) -> InstrumentObservables {
-        self.bring_forces_up_to_date();
-        let motion = NodeMotion::Held(id.0 as u32);
-        let held = |body: &SimulatedBody<T>| body.state.motions.iter().filter(|&&own| own == motion).count();
+    pub fn observe_instrument(&self, id: InstrumentId) -> InstrumentObservables {
+        let tool = &self.tools[id.0];
         InstrumentObservables {
-            tip: self.tips[id.0],
-            active: self.instruments[id.0].is_active(self.time()),
-            held_nodes: self.bodies.iter().map(held).sum(),
-            force: self.bodies.iter().fold(Vec3::ZERO, |sum, body| sum + holding_force(body, motion)),
+            tip: tool.pose.tip,
+            active: self.is_at_work(id),
+            held_nodes: tool.held_nodes as usize,
+            force: tool.force(),
+            torque: tool.torque(),
+            contacts: tool.contacts as usize,
         }
     }
 
@@ -157,7 +160,7 @@ impl<T: Scalar> SimulatedBody<T> {
     fn worst_quality(&self) -> f64 {
         let place = |node: u32| self.state.positions[node as usize].cast::<f64>();
         let quality = |cell: usize| match &self.mesh {
-            VolumeMesh::Tet(mesh) => TetQuality::of(mesh.cells[cell].map(place)).radius_ratio,
+            VolumeMesh::Tet(mesh) => radius_ratio(mesh.cells[cell].map(place)),
             VolumeMesh::Hex(mesh) => scaled_jacobian(&mesh.cells[cell].map(place)),
         };
         let left = (0..self.mesh.cell_count()).filter(|&cell| !self.state.removed[cell]);

@@ -1,4 +1,4 @@
-use super::step::Motion;
+use super::step::{MOST_PARTS, Motion};
 use super::{StepError, World};
 use crate::dynamics::Drive;
 use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Newton};
@@ -15,21 +15,27 @@ impl<T: Scalar> World<T> {
         settings: &Implicit,
         stages: Stages,
     ) -> Result<Motion, StepError> {
-        stages.run(Stage::Instruments, || {
-            self.grip(span);
-            self.move_tips(span.to);
-        });
-        let drive = Drive { end: span.to, tips: &self.tips, gravity: Vec3::from(self.config.gravity).cast() };
-        let mut report = ImplicitReport::NOTHING;
-        let mut failed = None;
-        for (number, (body, memory)) in self.bodies.iter_mut().zip(&mut self.implicit).enumerate() {
-            let own = stages.run(Stage::Newton, || {
-                implicit::advance(body, memory, settings, span.from, self.config.step, &drive, stages)
-            });
-            if !own.converged && settings.newton != Newton::Linearised {
-                failed = failed.or(Some((number, own)));
+        let parts = stages.run(Stage::Instruments, || self.approach_in_time(span));
+        let gravity = Vec3::from(self.config.gravity).cast();
+        let (mut report, mut failed) = (ImplicitReport::NOTHING, None);
+        let share = |part: u32| f64::from(part) / f64::from(parts);
+        for part in 0..parts {
+            let at = |part: u32| span.from + (span.to - span.from) * share(part);
+            stages.run(Stage::Instruments, || self.move_tools(span, share(part), share(part + 1)));
+            let (from, end) = (at(part), if part + 1 == parts { span.to } else { at(part + 1) });
+            let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
+            let dt = self.config.step / f64::from(parts);
+            for (number, (body, memory)) in self.bodies.iter_mut().zip(&mut self.implicit).enumerate() {
+                // A scheme over two steps knows steps of one length.
+                body.state.past.is_known &= parts == 1;
+                let own =
+                    stages.run(Stage::Newton, || implicit::advance(body, memory, settings, from, dt, &drive, stages));
+                body.state.past.is_known &= parts == 1;
+                if !own.converged && settings.newton != Newton::Linearised {
+                    failed = failed.or(Some((number, own)));
+                }
+                report = report.worst(own);
             }
-            report = report.worst(own);
         }
         if !stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds())) {
             self.undo();
@@ -37,8 +43,27 @@ impl<T: Scalar> World<T> {
         }
         match failed {
             Some((number, own)) => Err(self.not_converged(number, &own)),
-            None => Ok(Motion { substeps: 1, retries: 0, implicit: Some(report) }),
+            None => Ok(Motion { substeps: parts, retries: 0, implicit: Some(report) }),
         }
+    }
+
+    /// Lets instruments take hold or let go, and has all tissue looked at that is near one that touches; gives in how many parts the
+    /// step is divided, so that none of those goes farther than its radius in one.
+    fn approach_in_time(&mut self, span: &Span) -> u32 {
+        self.lead_tools(span);
+        let (way, ratio) = self.survey_tools(span);
+        if self.motion.rods.is_empty() {
+            self.bodies.iter_mut().for_each(|body| body.contacts.forget());
+            return 1;
+        }
+        let mut near = false;
+        for body in &mut self.bodies {
+            let coast = body.fastest_node() * self.config.step + way;
+            near |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, coast);
+            // What is pushed pushes its neighbours: all of the surface may come to touch.
+            body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, f64::INFINITY);
+        }
+        if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
     fn not_converged(&self, body: usize, report: &ImplicitReport) -> StepError {

@@ -147,8 +147,8 @@ fn the_cycle_is_symmetric_and_positive() {
         model.add_blocks(&places, &mut scratch, &mut diagonal);
         model.add_blocks(&places, &mut scratch, &mut multigrid);
         let masses = vec![0.0; nodes];
-        diagonal.invert(1.0, masses.iter().copied(), &filters);
-        let mut cycle = multigrid.set_up(&mut matrix, &mut diagonal, &filters, 1.0, &masses, &serial);
+        diagonal.invert(&masses, &filters, &serial);
+        let mut cycle = multigrid.set_up(&mut matrix, &mut diagonal, &filters, &masses, &serial);
         let mut correct = |residual: &[Vector]| {
             let mut corrected = vec![Vector::ZERO; nodes];
             let size = cycle.apply(&mut matrix, &filters, residual, &mut corrected, &serial);
@@ -192,8 +192,8 @@ fn loads_in_held_directions_do_not_disturb() {
     model.add_blocks(mesh.nodes(), &mut scratch, &mut diagonal);
     model.add_blocks(mesh.nodes(), &mut scratch, &mut multigrid);
     let masses = vec![0.0; nodes];
-    diagonal.invert(1.0, masses.iter().copied(), &filters);
-    let mut cycle = multigrid.set_up(&mut matrix, &mut diagonal, &filters, 1.0, &masses, &serial);
+    diagonal.invert(&masses, &filters, &serial);
+    let mut cycle = multigrid.set_up(&mut matrix, &mut diagonal, &filters, &masses, &serial);
     let mut iterations = |reaction: f64| {
         let load = |node: usize| {
             let across = Vector::new((node as f64).sin(), 0.3, 0.7) * reaction;

@@ -47,7 +47,9 @@ fn driven_nodes_arrive() {
         let path =
             Curve::piecewise_linear(vec![(0.0, Vector::new(0.1, 0.05, 0.15)), (0.1, Vector::new(0.12, 0.05, 0.15))])
                 .unwrap();
-        let grasper = world.add_instrument(Grasper { path, radius: 0.03, close: 0.02, open: None }).unwrap();
+        let grasper = world
+            .add_instrument(Grasper { path, radius: 0.03, close: 0.02, open: None, ..Grasper::default() })
+            .unwrap();
         run(&mut world, 10);
         let body = world.body(id);
         for (x, rest) in body.positions().iter().zip(body.mesh().nodes()) {

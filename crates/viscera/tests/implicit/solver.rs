@@ -54,7 +54,7 @@ fn solve(matrix: &mut BlockMatrix<f64>, case: &Case, stop: Stop) -> (Vec<Vector>
     for node in 0..nodes {
         preconditioner.add(node as u32, node as u32, matrix.block(node, node));
     }
-    preconditioner.invert(1.0, std::iter::repeat_n(0.0, nodes), &case.filters);
+    preconditioner.invert(&vec![0.0; nodes], &case.filters, &Executor::serial());
     let masses = vec![1.0; nodes];
     let Case { rhs, filters, prescribed } = case;
     let problem = Problem { rhs, filters, prescribed, masses: &masses, executor: &Executor::serial() };

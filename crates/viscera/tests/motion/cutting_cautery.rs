@@ -15,7 +15,7 @@ fn removed_on_a_way<T: Precision>(from: Vector, to: Vector, steps: u32, on: (f64
     let mut world = world::<T>([0.0; 3], 0.01);
     let id = world.add(free_bar().fix(side("z-min"))).unwrap();
     let path = Curve::piecewise_linear(vec![(0.0, from), (duration, to)]).unwrap();
-    world.add_instrument(Cautery { path, radius: RADIUS, on }).unwrap();
+    world.add_instrument(Cautery { path, radius: RADIUS, on, ..Cautery::default() }).unwrap();
     let reported: usize = (0..steps).map(|_| world.step().unwrap().removed_cells).sum();
     let removed = world.body(id).state().removed.clone();
     assert_eq!(reported, removed.iter().filter(|&&removed| removed).count());

@@ -16,8 +16,15 @@ fn jaws_carry_what_they_took_until_they_open<T: Precision>(tolerance: f64) {
     let path = Curve::piecewise_linear(vec![(0.02, TIP), (0.1, away)]).unwrap();
     let mut world = world::<T>([0.0; 3], 5e-3);
     let id = world.add(free_bar().fix(side("z-min")).damping(5.0)).unwrap();
-    let grasper =
-        world.add_instrument(Grasper { path: path.clone(), radius: 0.022, close: 0.01, open: Some(0.15) }).unwrap();
+    let grasper = world
+        .add_instrument(Grasper {
+            path: path.clone(),
+            radius: 0.022,
+            close: 0.01,
+            open: Some(0.15),
+            ..Grasper::default()
+        })
+        .unwrap();
     let within: Vec<usize> = {
         let nodes = world.body(id).mesh().nodes();
         (0..nodes.len()).filter(|&node| (nodes[node] - TIP).norm() <= 0.022).collect()
@@ -59,7 +66,8 @@ fn a_hanging_weight_is_felt_as_mass_times_gravity<T: Precision>(tolerance: f64) 
         )
         .unwrap();
     let path = Curve::constant(Vector::new(0.02, 0.02, 0.08));
-    let grasper = world.add_instrument(Grasper { path, radius: 0.03, close: 0.0, open: None }).unwrap();
+    let grasper =
+        world.add_instrument(Grasper { path, radius: 0.03, close: 0.0, open: None, ..Grasper::default() }).unwrap();
     for _ in 0..400 {
         world.step().unwrap();
     }

@@ -83,9 +83,11 @@ fn play<T: Precision>(telling: &Telling) -> (Vec<Vector>, usize) {
     let tip = [0.02, 0.02, 0.16];
     let path = telling.path(&[(0.02, tip), (0.2, [0.02, 0.035, 0.17])]);
     let radius = 0.023 * telling.length;
-    world.add_instrument(Grasper { path, radius, close: 0.02, open: None }).unwrap();
+    world.add_instrument(Grasper { path, radius, close: 0.02, open: None, ..Grasper::default() }).unwrap();
     let path = telling.path(&[(0.05, [-0.02, 0.033, 0.11]), (0.2, [0.06, 0.033, 0.13])]);
-    world.add_instrument(Cautery { path, radius: 0.006 * telling.length, on: (0.05, 0.2) }).unwrap();
+    world
+        .add_instrument(Cautery { path, radius: 0.006 * telling.length, on: (0.05, 0.2), ..Cautery::default() })
+        .unwrap();
     for _ in 0..50 {
         world.step().unwrap();
     }

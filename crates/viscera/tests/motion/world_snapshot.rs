@@ -16,10 +16,10 @@ fn operation<T: Precision>() -> World<T> {
     let tip = Vector::new(0.02, 0.02, 0.16);
     let pull = vec![(0.01, tip), (0.1, tip + Vector::new(0.0, 0.01, 0.02))];
     let path = Curve::piecewise_linear(pull).unwrap();
-    world.add_instrument(Grasper { path, radius: 0.025, close: 0.01, open: Some(0.12) }).unwrap();
+    world.add_instrument(Grasper { path, radius: 0.025, close: 0.01, open: Some(0.12), ..Grasper::default() }).unwrap();
     let across = vec![(0.1, Vector::new(-0.01, -0.02, 0.07)), (0.25, Vector::new(0.05, 0.06, 0.09))];
     let path = Curve::piecewise_linear(across).unwrap();
-    world.add_instrument(Cautery { path, radius: 0.02, on: (0.1, 0.25) }).unwrap();
+    world.add_instrument(Cautery { path, radius: 0.02, on: (0.1, 0.25), ..Cautery::default() }).unwrap();
     world
 }
 

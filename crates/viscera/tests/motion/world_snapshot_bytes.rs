@@ -29,10 +29,10 @@ fn operation<T: Precision>(mesh: VolumeMesh, recipe: Box<dyn ModelRecipe>, integ
     world.add(if hexahedra || energy_momentum { body } else { body.keep_volume(1e4) }).unwrap();
     let tip = Vector::new(0.02, 0.02, 0.16);
     let path = Curve::piecewise_linear(vec![(0.02, tip), (0.1, tip + Vector::new(0.0, 0.01, 0.02))]).unwrap();
-    world.add_instrument(Grasper { path, radius: 0.025, close: 0.02, open: Some(0.12) }).unwrap();
+    world.add_instrument(Grasper { path, radius: 0.025, close: 0.02, open: Some(0.12), ..Grasper::default() }).unwrap();
     let across = vec![(0.03, Vector::new(-0.01, -0.02, 0.07)), (0.12, Vector::new(0.05, 0.06, 0.09))];
     let path = Curve::piecewise_linear(across).unwrap();
-    world.add_instrument(Cautery { path, radius: 0.02, on: (0.03, 0.12) }).unwrap();
+    world.add_instrument(Cautery { path, radius: 0.02, on: (0.03, 0.12), ..Cautery::default() }).unwrap();
     world
 }
 
@@ -170,7 +170,7 @@ fn bytes_with_a_checksum_that_fits_are_not_believed_either() {
     let content = &bytes[..bytes.len() - 4];
     let mut newer = content.to_vec();
     newer[8] = 9;
-    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 1 });
+    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 2 });
     for length in 11..content.len() {
         refusal(world.read_snapshot(&signed(content[..length].to_vec())));
     }

@@ -127,7 +127,7 @@ fn growth(factor: f64, steps: usize) -> f64 {
         Vector::new(wave.sin(), (1.7 * wave).cos(), (2.3 * wave).sin()) * 1e-3
     });
     let before = world.observe(id).kinetic_energy;
-    let drive = Drive { end: 0.0, tips: &[], gravity: Vec3::ZERO };
+    let drive = Drive { end: 0.0, frames: &[], rods: &[], gravity: Vec3::ZERO };
     for _ in 0..steps {
         explicit::advance(world.body_mut(id), factor * limit, &drive, Stages::unobserved());
     }

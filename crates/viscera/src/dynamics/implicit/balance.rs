@@ -117,7 +117,7 @@ impl<T: Scalar> Step<'_, T> {
     }
 
     /// R − F − C v − M a of the nodes that forces move.
-    fn find_lack(&mut self) -> Balance {
+    pub(super) fn find_lack(&mut self) -> Balance {
         let inertia = T::from_f64(self.numbers.inertia / (self.dt * self.dt));
         let (body, memory) = (&*self.body, &mut *self.memory);
         let (increment, coast, damping, filters) = (&memory.increment, &memory.coast, &memory.damping, &memory.filters);
@@ -137,7 +137,11 @@ impl<T: Scalar> Step<'_, T> {
         let blocks = node_blocks(increment.len());
         let sums = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|i| a[i] + b[i]);
         let squares = body.scratch.executor.fold(blocks, NodeBlocks(&mut memory.lack), &work, &sums);
-        let [lack, inertial, external, internal] = squares.unwrap_or_default().map(f64::sqrt);
+        let mut squares = squares.unwrap_or_default();
+        if !self.body.contacts.is_empty() || !self.memory.dragged.is_empty() {
+            squares = self.add_tools(squares);
+        }
+        let [lack, inertial, external, internal] = squares.map(f64::sqrt);
         Balance { lack, scale: inertial + external + internal }
     }
 }

@@ -5,7 +5,7 @@
 use super::scheme::{Coast, Numbers, Past, Start};
 use crate::math::Scalar;
 
-pub(super) const NUMBERS: Numbers = Numbers { inertia: 2.25, velocity: 1.5, place: 1.0 };
+pub(super) const NUMBERS: Numbers = Numbers { inertia: 2.25, velocity: 1.5, place: 1.0, impulse: 1.0 };
 
 pub(super) fn coast<T: Scalar>(start: &Start<T>, past: Past<T>, dt: T) -> Coast<T> {
     let third = T::from_f64(1.0 / 3.0);

@@ -3,9 +3,11 @@
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
+use crate::contact::Contacts;
+use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockJacobi, BlockMatrix, Ending, Multigrid, Problem};
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Filter, Multigrid, Problem};
 use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
@@ -23,23 +25,35 @@ pub(super) struct Solve {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Solves for the correction of δ; it holds the guess.
+    /// Solves for the correction of δ; it holds the guess. The system is that of Newton's method over the factor of the stiffness,
+    /// which saves its product with every vector.
     pub(super) fn correct(&mut self) -> Solve {
         self.body.linearize(self.stages);
         let (numbers, dt) = (self.numbers, self.dt);
         let (alpha, beta) = (self.body.stiffness_damping.to_f64(), self.body.damping.to_f64());
         let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));
-        let mass_factor = T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt);
+        let mass_factor =
+            T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt) / stiffness;
         let (state, memory) = (&self.body.state, &mut *self.memory);
-        for (mass, &nodal) in memory.masses.iter_mut().zip(&state.masses) {
-            *mass = nodal * mass_factor;
-        }
+        let executor = self.body.scratch.executor.clone();
+        let masses = (NodeBlocks(&mut memory.masses), ReadBlocks(&state.masses));
+        executor.each(node_blocks(state.masses.len()), masses, &|_, (NodeBlocks(masses), ReadBlocks(nodal))| {
+            masses.iter_mut().zip(nodal).for_each(|(mass, &nodal)| *mass = nodal * mass_factor);
+        });
+        let contacts = &mut self.body.contacts;
+        let touches = !contacts.is_empty();
         let rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
             if memory.matrix.is_none() && memory.multigrid.is_none() {
                 let blocks = memory.preconditioner.blocks_mut();
                 for model in &state.models {
                     model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
+                }
+                if touches {
+                    set_stiffness(contacts, blocks, stiffness, &memory.masses, &memory.filters);
+                    contacts.add_blocks(stiffness.to_f64(), |row, column, block| {
+                        memory.preconditioner.add(row, column, block)
+                    });
                 }
             } else {
                 let mut sink = Sinks {
@@ -51,23 +65,35 @@ impl<T: Scalar> Step<'_, T> {
                 for model in &state.models {
                     model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
                 }
+                if touches {
+                    set_stiffness(contacts, sink.diagonal.blocks_mut(), stiffness, &memory.masses, &memory.filters);
+                    contacts.add_blocks(stiffness.to_f64(), |row, column, block| sink.add(row, column, block));
+                }
             }
-            let rounding = rounding(memory, &state.positions);
-            memory.preconditioner.invert(stiffness, memory.masses.iter().copied(), &memory.filters);
+            let rounding = rounding(memory, &state.positions, &executor);
+            memory.preconditioner.invert(&memory.masses, &memory.filters, &executor);
             rounding
         });
-        let executor = self.body.scratch.executor.clone();
+        if touches {
+            // Now that the springs have their stiffness, their forces belong to what is to be balanced.
+            self.find_lack();
+        }
+        let (state, memory) = (&self.body.state, &mut *self.memory);
+        let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));
+        executor.each(node_blocks(memory.lack.len()), rhs, &|_, (NodeBlocks(rhs), ReadBlocks(lack))| {
+            rhs.iter_mut().zip(lack).for_each(|(rhs, &lack)| *rhs = lack * (T::ONE / stiffness));
+        });
         let mut tangent = Tangent {
             models: &state.models,
             positions: &state.positions,
             scratch: &mut self.body.scratch,
             assembled: memory.matrix.as_mut(),
             masses: &memory.masses,
-            stiffness,
+            contacts: (&self.body.contacts, 1.0 / stiffness.to_f64()),
             stages: self.stages,
         };
         let problem = Problem {
-            rhs: &memory.lack,
+            rhs: &memory.rhs,
             filters: &memory.filters,
             prescribed: &memory.prescribed,
             masses: &memory.masses,
@@ -78,7 +104,7 @@ impl<T: Scalar> Step<'_, T> {
         let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
             Some(multigrid) => {
                 let (filters, masses) = (&memory.filters, &memory.masses);
-                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, stiffness, masses, &executor);
+                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, masses, &executor);
                 solver.solve(&mut tangent, &mut cycle, &problem, stop, &mut memory.correction)
             }
             None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
@@ -123,10 +149,28 @@ impl<T: Scalar> BlockSink<T> for Sinks<'_, T> {
     }
 }
 
+/// Gives new contacts the stiffness that belongs to the blocks on the diagonal.
+fn set_stiffness<T: Scalar>(
+    contacts: &mut Contacts,
+    blocks: &[Mat3<T>],
+    stiffness: T,
+    masses: &[T],
+    filters: &[Filter<T>],
+) {
+    contacts.set_stiffness(|node| {
+        let node = node as usize;
+        let diagonal = (blocks[node].trace().abs() / T::from_f64(3.0) + masses[node]).to_f64() * stiffness.to_f64();
+        (filters[node] != Filter::Held && diagonal > 0.0).then_some(diagonal)
+    });
+}
+
 /// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.
-fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>]) -> f64 {
-    let blocks = memory.preconditioner.blocks_mut();
-    let squares =
-        blocks.iter().zip(positions).map(|(block, x)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2));
-    ROUNDINGS * T::EPSILON.to_f64() * squares.sum::<f64>().sqrt()
+fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>], executor: &Executor) -> f64 {
+    let data = (ReadBlocks(&*memory.preconditioner.blocks_mut()), ReadBlocks(positions));
+    let square = |(block, x): (&Mat3<T>, &Vec3<T>)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2);
+    let work = |_, (ReadBlocks(blocks), ReadBlocks(x)): (ReadBlocks<'_, Mat3<T>>, ReadBlocks<'_, Vec3<T>>)| {
+        blocks.iter().zip(x).map(square).sum::<f64>()
+    };
+    let squares = executor.fold(node_blocks(positions.len()), data, &work, &|a, b| a + b).unwrap_or(0.0);
+    ROUNDINGS * T::EPSILON.to_f64() * squares.sqrt()
 }

@@ -8,7 +8,7 @@
 use super::scheme::{Coast, Numbers, Start};
 use crate::math::Scalar;
 
-pub(super) const NUMBERS: Numbers = Numbers { inertia: 2.0, velocity: 2.0, place: 0.5 };
+pub(super) const NUMBERS: Numbers = Numbers { inertia: 2.0, velocity: 2.0, place: 0.5, impulse: 1.0 };
 
 pub(super) fn coast<T: Scalar>(start: &Start<T>, dt: T) -> Coast<T> {
     Coast { increment: start.velocity * dt, velocity: start.velocity }

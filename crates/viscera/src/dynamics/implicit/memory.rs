@@ -26,13 +26,17 @@ pub struct ImplicitMemory<T> {
     pub(super) nodal: Vec<Vec3<T>>,
     /// Memory for forces of damping [N].
     pub(super) damping: Vec<Vec3<T>>,
-    /// The masses' part of the matrix [kg/s²].
+    /// Right-hand side of the linear system: what the forces lack, over the factor of the stiffness [N].
+    pub(super) rhs: Vec<Vec3<T>>,
+    /// The masses' part of the matrix, over the factor of the stiffness [kg/s²].
     pub(super) masses: Vec<T>,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) matrix: Option<BlockMatrix<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
+    /// Forces with which jaws drag nodes that slip through them [N].
+    pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
     pub(super) history: Vec<f64>,
 }
@@ -49,6 +53,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             coast: zeros(),
             coast_velocities: zeros(),
             lack: zeros(),
+            rhs: zeros(),
             correction: zeros(),
             prescribed: zeros(),
             nodal: zeros(),
@@ -59,6 +64,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, rings)),
             matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            dragged: Vec::with_capacity(nodes),
             history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
         }
     }

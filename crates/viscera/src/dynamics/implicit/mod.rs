@@ -29,6 +29,7 @@ mod scheme;
 mod settings;
 mod step;
 mod tangent;
+mod tools;
 
 pub use memory::ImplicitMemory;
 pub use report::ImplicitReport;

@@ -9,7 +9,7 @@ use super::scheme::{Coast, Numbers, Start};
 use crate::math::Scalar;
 
 pub(super) fn numbers(beta: f64, gamma: f64) -> Numbers {
-    Numbers { inertia: 1.0 / beta, velocity: gamma / beta, place: 1.0 }
+    Numbers { inertia: 1.0 / beta, velocity: gamma / beta, place: 1.0, impulse: gamma }
 }
 
 pub(super) fn coast<T: Scalar>(start: &Start<T>, dt: T, beta: T, gamma: T) -> Coast<T> {

@@ -2,8 +2,13 @@
 
 use super::ImplicitReport;
 use super::balance::Balance;
+use super::correction::Solve;
+use super::memory::ImplicitMemory;
 use super::step::Step;
+use super::tools::Guess;
+use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
+use crate::solver::Filter;
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.
 const ASTRAY: f64 = 0.5;
@@ -17,6 +22,10 @@ const CONTENT: f64 = 0.9;
 const STEEP: f64 = 0.5;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
+/// The most solves of a linearised step between which contacts close or open.
+const ROUNDS: u32 = 8;
+/// Iterations of Newton's method after which contacts stay as they are.
+const DECIDED: u32 = 20;
 /// The most lengths that the line search tries.
 const TRIALS: u32 = 10;
 
@@ -26,7 +35,15 @@ impl<T: Scalar> Step<'_, T> {
         let before = self.evaluate();
         let arrived = self.go_on();
         self.memory.correction.copy_from_slice(&self.memory.coast);
-        let solve = self.correct();
+        self.meet_tools(Guess::Coast);
+        let mut solve = self.correct();
+        for _ in 1..ROUNDS {
+            if solve.negative_curvature || !self.meet_tools(Guess::Correction) {
+                break;
+            }
+            let again = self.correct();
+            solve = Solve { iterations: solve.iterations + again.iterations, ..again };
+        }
         if !solve.negative_curvature {
             let gain = self.work().abs();
             self.move_by(1.0);
@@ -66,7 +83,12 @@ impl<T: Scalar> Step<'_, T> {
             report.residual = if scale > 0.0 { balance.lack / scale } else { 0.0 };
             self.memory.history.push(report.residual);
             let arrived = self.go_on();
-            report.converged = arrived && balance.lack <= (relative * scale).max(floor);
+            let guess = if report.newton_iterations == 0 { Guess::Coast } else { Guess::Increment };
+            let news = report.newton_iterations < DECIDED && self.meet_tools(guess);
+            if news {
+                balance = self.find_lack();
+            }
+            report.converged = arrived && !news && balance.lack <= (relative * scale).max(floor);
             if report.converged || report.newton_iterations == at_most || !balance.lack.is_finite() {
                 return report;
             }
@@ -86,26 +108,43 @@ impl<T: Scalar> Step<'_, T> {
 
     /// Sets what driven nodes still have to go; gives whether all are where they have to be.
     fn go_on(&mut self) -> bool {
-        let memory = &mut *self.memory;
-        let mut arrived = true;
-        for node in 0..memory.prescribed.len() {
-            let rest = memory.coast[node] - memory.increment[node];
-            let rest = rest - memory.filters[node].apply(rest);
-            // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
-            let ways = memory.coast[node].norm() + memory.increment[node].norm();
-            let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
-            memory.prescribed[node] = if is_there { Vec3::ZERO } else { rest };
-            arrived &= is_there;
-        }
-        arrived
+        let ImplicitMemory { prescribed, coast, increment, filters, .. } = &mut *self.memory;
+        let parts = node_blocks(prescribed.len());
+        let work = |block: usize, NodeBlocks(prescribed): NodeBlocks<'_, Vec3<T>>| {
+            let mut arrived = true;
+            for (i, prescribed) in prescribed.iter_mut().enumerate() {
+                let node = block * NODE_BLOCK + i;
+                *prescribed = Vec3::ZERO;
+                if filters[node] == Filter::Free {
+                    continue;
+                }
+                let rest = coast[node] - increment[node];
+                let rest = rest - filters[node].apply(rest);
+                // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
+                let ways = coast[node].norm() + increment[node].norm();
+                let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
+                if !is_there {
+                    *prescribed = rest;
+                }
+                arrived &= is_there;
+            }
+            arrived
+        };
+        let executor = &self.body.scratch.executor;
+        executor.fold(parts, NodeBlocks(prescribed), &work, &|a, b| a && b).unwrap_or(true)
     }
 
     /// Work of what the forces lack to balance against the correction [J], in the free directions: reactions are larger by far,
     /// and would turn the rounding of a correction across them into work.
     fn work(&self) -> f64 {
-        let memory = &*self.memory;
-        let free = memory.filters.iter().zip(&memory.lack).map(|(filter, &lack)| filter.apply(lack));
-        -free.zip(&memory.correction).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
+        let ImplicitMemory { filters, lack, correction, .. } = &*self.memory;
+        let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
+            let nodes = block * NODE_BLOCK..;
+            let free = filters[nodes.clone()].iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
+            free.zip(&correction[nodes]).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
+        };
+        let executor = &self.body.scratch.executor;
+        -executor.fold(node_blocks(lack.len()), ReadBlocks(lack), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 
     /// Moves along the correction, as far as it leads towards balance: neither up again nor where most of the way down is left.

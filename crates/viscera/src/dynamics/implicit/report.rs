@@ -19,6 +19,16 @@ impl ImplicitReport {
     pub(crate) const NOTHING: Self =
         Self { newton_iterations: 0, linear_iterations: 0, residual: 0.0, converged: true, negative_curvature: false };
 
+    /// A solve after this one in the same step.
+    pub(crate) fn then(self, next: Self) -> Self {
+        Self {
+            newton_iterations: self.newton_iterations + next.newton_iterations,
+            linear_iterations: self.linear_iterations + next.linear_iterations,
+            negative_curvature: self.negative_curvature || next.negative_curvature,
+            ..next
+        }
+    }
+
     /// The worse of the two in each number.
     pub(crate) fn worst(self, other: Self) -> Self {
         Self {

@@ -80,6 +80,9 @@ pub(super) struct Numbers {
     pub(super) velocity: f64,
     /// θ: forces act at x + θ δ.
     pub(super) place: f64,
+    /// Impulse of a force that is in the equation once, over Δt: Newmark's method takes 1 − γ of a force from the beginning of the
+    /// step, where tools are left out, because what touches there need not touch at the end.
+    pub(super) impulse: f64,
 }
 
 /// A node at the beginning of a step.

@@ -3,6 +3,7 @@ use super::scheme::{Numbers, Past, Start};
 use super::{Implicit, ImplicitReport, Newton};
 use crate::body::SimulatedBody;
 use crate::dynamics::Drive;
+use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 use crate::solver::Filter;
 use crate::stage::Stages;
@@ -20,13 +21,19 @@ pub fn advance<T: Scalar>(
     let numbers = settings.scheme.numbers(body.state.past.is_known);
     let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages };
     step.begin();
-    let report = match settings.newton {
-        Newton::Linearised => step.solve_linearised(),
-        Newton::Full { relative, at_most } => step.solve_in_full(relative, at_most),
-    };
+    let mut report = step.solve();
+    for _ in 0..SLIPS {
+        if !step.slip() {
+            break;
+        }
+        report = report.then(step.solve());
+    }
     step.finish();
     report
 }
+
+/// How many times nodes that slip through jaws are let go in a step; the first time sees nearly all of them.
+const SLIPS: u32 = 4;
 
 /// One implicit step of one body, whatever the scheme.
 pub(super) struct Step<'a, T: Scalar> {
@@ -41,79 +48,104 @@ pub(super) struct Step<'a, T: Scalar> {
 }
 
 impl<T: Scalar> Step<'_, T> {
+    fn solve(&mut self) -> ImplicitReport {
+        match self.settings.newton {
+            Newton::Linearised => self.solve_linearised(),
+            Newton::Full { relative, at_most } => self.solve_in_full(relative, at_most),
+        }
+    }
+
     /// Where nodes would go without forces, and where driven ones have to go.
     fn begin(&mut self) {
         self.memory.start.copy_from_slice(&self.body.state.positions);
         self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
+        self.memory.dragged.clear();
+        self.body.contacts.clear();
         self.body.is_linearized &= self.body.state.forces_are_current;
         if self.settings.scheme.needs_acceleration() {
             self.balance_at_start();
         }
-        let dt = T::from_f64(self.dt);
-        for node in 0..self.memory.start.len() {
-            let state = &self.body.state;
-            let position = state.positions[node];
-            let (target, filter) = (self.drive.target(self.body, node, position), self.body.free_directions(node));
-            let memory = &mut *self.memory;
-            memory.increment[node] = Vec3::ZERO;
-            memory.coast_velocities[node] = Vec3::ZERO;
-            memory.filters[node] = filter;
-            memory.coast[node] = match target {
-                Some(target) if filter == Filter::Held => target - position,
-                _ => {
-                    let past = state.past.is_known.then(|| Past {
-                        increment: position - state.past.positions[node],
-                        velocity: state.past.velocities[node],
-                    });
-                    let needs_acceleration = self.settings.scheme.needs_acceleration();
-                    let acceleration =
-                        if needs_acceleration { memory.lack[node] / state.masses[node] } else { Vec3::ZERO };
-                    let start = Start { velocity: state.velocities[node], acceleration, past };
-                    let coast = self.settings.scheme.coast(&start, dt);
-                    memory.coast_velocities[node] = coast.velocity;
-                    target.map_or(coast.increment, |target| filter.merge(coast.increment, target - position))
-                }
-            };
-        }
+        let (body, drive, scheme, dt) = (&*self.body, self.drive, self.settings.scheme, T::from_f64(self.dt));
+        let ImplicitMemory { increment, coast, coast_velocities, filters, lack, .. } = &mut *self.memory;
+        let (state, lack, parts) = (&body.state, &lack[..], node_blocks(lack.len()));
+        let data = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
+        body.scratch.executor.each(parts, data, &|block, ((increment, coast), (coast_velocities, filters))| {
+            increment.0.fill(Vec3::ZERO);
+            for i in 0..coast.0.len() {
+                let node = block * NODE_BLOCK + i;
+                let position = state.positions[node];
+                let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
+                filters.0[i] = filter;
+                let (way, velocity) = match target {
+                    Some(target) if filter == Filter::Held => (target - position, Vec3::ZERO),
+                    _ => {
+                        let past = state.past.is_known.then(|| Past {
+                            increment: position - state.past.positions[node],
+                            velocity: state.past.velocities[node],
+                        });
+                        let acceleration =
+                            if scheme.needs_acceleration() { lack[node] / state.masses[node] } else { Vec3::ZERO };
+                        let coast = scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt);
+                        let merged = |target: Vec3<T>| filter.merge(coast.increment, target - position);
+                        (target.map_or(coast.increment, merged), coast.velocity)
+                    }
+                };
+                coast.0[i] = way;
+                coast_velocities.0[i] = velocity;
+            }
+        });
     }
 
     /// v⁺ for the δ that is known.
     pub(super) fn end_velocity(&self, node: usize) -> Vec3<T> {
-        let memory = &*self.memory;
-        let driven = memory.increment[node] / T::from_f64(self.dt);
-        let free = (memory.increment[node] - memory.coast[node])
-            .mul_add(T::from_f64(self.numbers.velocity / self.dt), memory.coast_velocities[node]);
-        memory.filters[node].merge(free, driven)
+        end_velocity(self.memory, self.numbers, self.dt, node)
     }
 
     /// δ grows by `length` corrections.
     pub(super) fn move_by(&mut self, length: f64) {
         let length = T::from_f64(length);
-        let memory = &mut *self.memory;
-        for (increment, &correction) in memory.increment.iter_mut().zip(&memory.correction) {
-            *increment = correction.mul_add(length, *increment);
-        }
+        let ImplicitMemory { increment, correction, .. } = &mut *self.memory;
+        let data = (NodeBlocks(increment), ReadBlocks(correction));
+        self.body.scratch.executor.each(node_blocks(correction.len()), data, &|_, (increment, correction)| {
+            for (increment, &correction) in increment.0.iter_mut().zip(correction.0) {
+                *increment = correction.mul_add(length, *increment);
+            }
+        });
     }
 
     /// The state at the end of the step.
     fn finish(&mut self) {
-        for node in 0..self.memory.start.len() {
-            self.body.state.velocities[node] = self.end_velocity(node);
-        }
-        let (state, memory) = (&mut self.body.state, &*self.memory);
-        let mut moved = self.numbers.place != 1.0;
-        for node in 0..memory.start.len() {
-            let end = memory.start[node] + memory.increment[node];
-            moved |= end != state.positions[node];
-            state.positions[node] = end;
-        }
+        self.account_for_tools();
+        let (memory, numbers, dt) = (&*self.memory, self.numbers, self.dt);
+        let (state, executor) = (&mut self.body.state, &self.body.scratch.executor);
+        let data = (NodeBlocks(&mut state.positions), NodeBlocks(&mut state.velocities));
+        let work =
+            |block: usize, (NodeBlocks(x), NodeBlocks(v)): (NodeBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| {
+                let mut moved = false;
+                for i in 0..x.len() {
+                    let node = block * NODE_BLOCK + i;
+                    v[i] = end_velocity(memory, numbers, dt, node);
+                    let end = memory.start[node] + memory.increment[node];
+                    moved |= end != x[i];
+                    x[i] = end;
+                }
+                moved
+            };
+        let moved = executor.fold(node_blocks(memory.start.len()), data, &work, &|a, b| a | b).unwrap_or(false);
         // The last evaluation of a full step was here, and its forces serve the next step.
-        if moved {
+        if moved || numbers.place != 1.0 {
             state.positions_changed();
         }
         if self.settings.scheme.needs_past() {
             state.past.keep(&memory.start, &memory.velocities);
         }
     }
+}
+
+fn end_velocity<T: Scalar>(memory: &ImplicitMemory<T>, numbers: Numbers, dt: f64, node: usize) -> Vec3<T> {
+    let driven = memory.increment[node] / T::from_f64(dt);
+    let free = (memory.increment[node] - memory.coast[node])
+        .mul_add(T::from_f64(numbers.velocity / dt), memory.coast_velocities[node]);
+    memory.filters[node].merge(free, driven)
 }

@@ -1,9 +1,10 @@
+use crate::contact::Contacts;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ForceModel, Scratch};
-use crate::solver::{BlockMatrix, LinearOperator, scale_and_add_masses};
+use crate::solver::{BlockMatrix, LinearOperator, add_weighted, set_weighted};
 use crate::stage::{Stage, Stages};
 
-/// The matrix of an implicit step: masses on the diagonal and a multiple of the stiffness.
+/// The matrix of an implicit step over the factor of the stiffness: K, masses on the diagonal, and the springs of contacts.
 pub(super) struct Tangent<'a, T: Scalar> {
     pub(super) models: &'a [Box<dyn ForceModel<T>>],
     pub(super) positions: &'a [Vec3<T>],
@@ -11,23 +12,26 @@ pub(super) struct Tangent<'a, T: Scalar> {
     /// K, where it is assembled.
     pub(super) assembled: Option<&'a mut BlockMatrix<T>>,
     pub(super) masses: &'a [T],
-    pub(super) stiffness: T,
+    /// Springs that the assembled matrix does not have, and one over the factor of the stiffness.
+    pub(super) contacts: (&'a Contacts, f64),
     pub(super) stages: Stages<'a>,
 }
 
 impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
     fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
-        match &mut self.assembled {
-            Some(matrix) => self.stages.run(Stage::Products("assembled-matrix"), || matrix.apply(x, out)),
-            None => {
-                out.fill(Vec3::ZERO);
-                for model in self.models {
-                    self.stages.run(Stage::Products(model.name()), || {
-                        model.add_product(self.positions, x, self.scratch, out);
-                    });
-                }
-            }
+        let (masses, models) = (self.masses, self.models);
+        if let Some(matrix) = &mut self.assembled {
+            self.stages.run(Stage::Products("assembled-matrix"), || matrix.apply(x, out));
+            add_weighted(&self.scratch.executor, out, masses, x);
+            return;
         }
-        scale_and_add_masses(&self.scratch.executor, out, self.stiffness, self.masses, x);
+        set_weighted(&self.scratch.executor, out, masses, x);
+        for model in models {
+            self.stages.run(Stage::Products(model.name()), || {
+                model.add_product(self.positions, x, self.scratch, out);
+            });
+        }
+        let (contacts, scale) = self.contacts;
+        contacts.add_product(scale, x, out);
     }
 }

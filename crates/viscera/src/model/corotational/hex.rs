@@ -1,5 +1,8 @@
 //! Corotational hexahedra in batches of lanes: one rotation for each, 2×2×2 points.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use fearless_simd::{Simd, dispatch};
 
 use super::Corotational;
@@ -12,6 +15,7 @@ use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 use crate::model::block_sink::{BlockSink, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
+use crate::model::sections::{SectionScratch, Sections};
 use crate::model::tet_loop::scatter_corner;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 use crate::model::{ForceModel, ModelError, Scratch};
@@ -26,6 +30,7 @@ const CENTRE: usize = 24;
 #[derive(Clone, Debug)]
 pub(super) struct CorotationalHexes<T: Scalar> {
     pub(super) corners: BlockTable<u32>,
+    pub(super) sections: Arc<Sections>,
     /// Gradients at the centre.
     pub(super) centres: BlockTable<T>,
     /// Gradients and volume of each Gauss point.
@@ -42,6 +47,7 @@ impl<T: Scalar> CorotationalHexes<T> {
         let fibred = super::has_fibres(tissue);
         let mut hexes = Self {
             corners: BlockTable::new(T::LANES, cells, 8, 0),
+            sections: Arc::default(),
             centres: BlockTable::new(T::LANES, cells, CENTRE, T::ZERO),
             points: BlockTable::new(T::LANES, cells, POINTS * POINT, T::ZERO),
             law: BlockTable::new(T::LANES, cells, if fibred { FIBRED } else { ISOTROPIC }, T::ZERO),
@@ -69,6 +75,7 @@ impl<T: Scalar> CorotationalHexes<T> {
             hexes.points.set_row(row, numbers.map(T::from_f64));
             hexes.law.set_row(row, law.into_iter().map(T::from_f64));
         }
+        hexes.sections = Arc::new(Sections::of_table(mesh.nodes.len(), &hexes.corners));
         Ok(hexes)
     }
 
@@ -121,15 +128,35 @@ impl<T: Scalar> CorotationalHexes<T> {
 
     /// Adds the forces, or with `PRODUCT` their derivative along `dx`.
     #[inline(always)]
-    fn add_with<S: Simd, const PRODUCT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
-        for (((nodes, centre), points), law) in tables {
-            let batch = self.load(simd, x, nodes, centre, law);
+    fn add_with<S: Simd, const PRODUCT: bool>(
+        &self,
+        simd: S,
+        [x, dx]: [&[[T; 4]]; 2],
+        batches: Range<usize>,
+        out: &mut [[T; 4]],
+    ) {
+        for number in batches {
+            let nodes = self.corners.block(number);
+            let batch = self.load(simd, x, nodes, self.centres.block(number), self.law.block(number));
             let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { batch.place };
-            let forces = self.element_forces::<S, PRODUCT>(simd, &batch, points, &direction);
-            for corner in 0..8 {
-                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
-            }
+            let forces = self.element_forces::<S, PRODUCT>(simd, &batch, self.points.block(number), &direction);
+            self.scatter::<S>(&forces, number, out);
+        }
+    }
+
+    fn add<const PRODUCT: bool>(&self, scratch: &mut Scratch<T>) {
+        let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sections.sum_rows());
+        self.sections.add(&mut sums, &|batches, rows| {
+            dispatch!(dispatch_level(), simd => self.add_with::<_, PRODUCT>(simd, [nodal, direction], batches, rows));
+        });
+    }
+
+    /// Adds the forces of a batch to the rows of its section.
+    #[inline(always)]
+    pub(super) fn scatter<S: Simd>(&self, forces: &[Vec3<T::Lanes<S>>; 8], batch: usize, out: &mut [[T; 4]]) {
+        let rows = self.sections.rows(batch * 8 * T::LANES..(batch + 1) * 8 * T::LANES);
+        for corner in 0..8 {
+            scatter_corner::<T, S>(forces[corner], rows, corner, out);
         }
     }
 
@@ -167,8 +194,7 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
+        self.add::<false>(scratch);
         scratch.finish(out);
     }
 
@@ -182,8 +208,10 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
         if self.formulation.tangent == Tangent::Frozen {
             scratch.start(x);
-            let (_, nodal, linearization) = scratch.start_linearization(self.linearization_len());
-            dispatch!(dispatch_level(), simd => self.linearize_with(simd, nodal, linearization));
+            let (executor, nodal, linearization) = scratch.start_linearization(self.linearization_len());
+            self.sections.each(executor, linearization, LINEARIZED * T::LANES, &|batches, rows| {
+                dispatch!(dispatch_level(), simd => self.linearize_with(simd, nodal, batches, rows));
+            });
         }
     }
 
@@ -191,12 +219,15 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
         scratch.start_direction(dx);
         if scratch.is_linearized {
             scratch.clear_forces();
-            let Scratch { direction, forces, linearization, .. } = scratch;
-            dispatch!(dispatch_level(), simd => self.add_linearized_product_with(simd, linearization, direction, forces));
+            let SectionScratch { direction, linearization, mut sums, .. } = scratch.sections(self.sections.sum_rows());
+            self.sections.add(&mut sums, &|batches, rows| {
+                dispatch!(dispatch_level(), simd => {
+                    self.add_linearized_product_with(simd, linearization, direction, batches, rows);
+                });
+            });
         } else {
             scratch.start(x);
-            let Scratch { nodal, direction, forces, .. } = scratch;
-            dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+            self.add::<true>(scratch);
         }
         scratch.finish(out);
     }
@@ -250,8 +281,12 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
         }
     }
 
+    fn sum_rows(&self) -> usize {
+        self.sections.sum_rows()
+    }
+
     fn bytes(&self) -> usize {
-        self.corners.bytes() + self.centres.bytes() + self.points.bytes() + self.law.bytes()
+        self.corners.bytes() + self.sections.bytes() + self.centres.bytes() + self.points.bytes() + self.law.bytes()
     }
 
     fn clone_box(&self) -> Box<dyn ForceModel<T>> {

@@ -2,6 +2,8 @@
 //!
 //! With h = √(s V) R A g at each Gauss point, found once, K dx = Σ σ(sym Σ_q dx_q h_qᵀ) h_p: no rotation is left in it.
 
+use std::ops::Range;
+
 use fearless_simd::Simd;
 
 use super::hex::{CorotationalHexes, POINTS};
@@ -9,7 +11,6 @@ use super::hooke::Hooke;
 use super::lane_vector::{load, store};
 use crate::math::{Lanes, Mat3, Real, Scalar, Vec3};
 use crate::model::block_sink::{BlockSink, add_block};
-use crate::model::tet_loop::scatter_corner;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 
 /// Numbers of the turned gradients of a point.
@@ -20,14 +21,20 @@ pub(super) const LINEARIZED: usize = FIBRE + 3;
 
 impl<T: Scalar> CorotationalHexes<T> {
     #[inline(always)]
-    pub(super) fn linearize_with<S: Simd>(&self, simd: S, x: &[[T; 4]], linearization: &mut [T]) {
-        let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
+    pub(super) fn linearize_with<S: Simd>(
+        &self,
+        simd: S,
+        x: &[[T; 4]],
+        batches: Range<usize>,
+        linearization: &mut [T],
+    ) {
         let rows = linearization.chunks_exact_mut(LINEARIZED * T::LANES);
-        for ((((nodes, centre), points), law), row) in tables.zip(rows) {
-            let place = gather_corners(simd, x, nodes);
-            let r = self.formulation.rotation(&deformation(&place, &load_gradients::<T, S>(simd, centre)));
+        for (batch, row) in batches.zip(rows) {
+            let place = gather_corners(simd, x, self.corners.block(batch));
+            let centre = load_gradients::<T, S>(simd, self.centres.block(batch));
+            let r = self.formulation.rotation(&deformation(&place, &centre));
             let turned = row.chunks_exact_mut(GRADIENTS * T::LANES);
-            for (point, turned) in points.chunks_exact(POINT * T::LANES).zip(turned) {
+            for (point, turned) in self.points.block(batch).chunks_exact(POINT * T::LANES).zip(turned) {
                 let gradients = load_gradients::<T, S>(simd, point);
                 let volume = T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
                 let (transport, scale) = self.formulation.transport(&r, &deformation(&place, &gradients));
@@ -36,7 +43,7 @@ impl<T: Scalar> CorotationalHexes<T> {
                     store(transport * gradients[corner], &mut turned[3 * corner * T::LANES..]);
                 }
             }
-            if let Some((direction, _)) = self.load_law(simd, law).fibre {
+            if let Some((direction, _)) = self.load_law(simd, self.law.block(batch)).fibre {
                 store(r * direction, &mut row[FIBRE * T::LANES..]);
             }
         }
@@ -48,12 +55,13 @@ impl<T: Scalar> CorotationalHexes<T> {
         simd: S,
         linearization: &[T],
         dx: &[[T; 4]],
+        batches: Range<usize>,
         out: &mut [[T; 4]],
     ) {
-        let rows = linearization.chunks_exact(LINEARIZED * T::LANES);
-        for ((nodes, law), row) in self.corners.blocks().zip(self.law.blocks()).zip(rows) {
-            let hooke = self.load_turned_law(simd, law, row);
-            let direction = gather_corners(simd, dx, nodes);
+        for batch in batches {
+            let row = &linearization[batch * LINEARIZED * T::LANES..(batch + 1) * LINEARIZED * T::LANES];
+            let hooke = self.load_turned_law(simd, self.law.block(batch), row);
+            let direction = gather_corners(simd, dx, self.corners.block(batch));
             let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
             for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
                 let gradients = load_gradients::<T, S>(simd, turned);
@@ -62,9 +70,7 @@ impl<T: Scalar> CorotationalHexes<T> {
                     forces[corner] += stress * gradients[corner];
                 }
             }
-            for corner in 0..8 {
-                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
-            }
+            self.scatter::<S>(&forces, batch, out);
         }
     }
 

@@ -144,6 +144,10 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for NodalPoints<T, L> {
         2
     }
 
+    fn sum_rows(&self) -> usize {
+        self.section_rows()
+    }
+
     fn bytes(&self) -> usize {
         self.table_bytes()
     }

@@ -1,6 +1,7 @@
 //! The nodes as points of integration: each sees the nodes around it through the gradients g_ab of its mean deformation.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use fearless_simd::{Simd, dispatch};
@@ -11,6 +12,7 @@ use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::block_sink::add_block;
 use crate::model::block_table::BlockTable;
+use crate::model::sections::{SectionScratch, Sections};
 use crate::model::tet_loop::gather_corner;
 use crate::model::{BlockSink, ModelError, Scratch};
 
@@ -28,6 +30,7 @@ pub(super) struct NodalPoints<T: Scalar, L> {
     starts: Vec<u32>,
     /// Entry after entry, a node for each lane.
     nodes: Vec<u32>,
+    sections: Arc<Sections>,
     /// Entry after entry, x, y, z of g_ab [1/m] for each lane.
     gradients: Vec<T>,
     /// Entry after entry, what the cells of the point add to the spring k_ab [N/m], for each lane.
@@ -49,6 +52,7 @@ impl<T: Scalar, L> Clone for NodalPoints<T, L> {
         Self {
             starts: self.starts.clone(),
             nodes: self.nodes.clone(),
+            sections: Arc::clone(&self.sections),
             gradients: self.gradients.clone(),
             springs: self.springs.clone(),
             constants: self.constants.clone(),
@@ -73,6 +77,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         let mut model = Self {
             starts: vec![0],
             nodes: Vec::new(),
+            sections: Arc::default(),
             gradients: Vec::new(),
             springs: Vec::new(),
             constants: BlockTable::new(T::LANES, points.len(), 2 + L::PARAMETERS.len(), T::ZERO),
@@ -83,6 +88,8 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
             law: PhantomData,
         };
         points.chunks(T::LANES).for_each(|batch| model.push_batch(batch));
+        let bounds: Vec<_> = model.starts.iter().map(|&start| start as usize * T::LANES).collect();
+        model.sections = Arc::new(Sections::new(mesh.nodes.len(), &model.nodes, &bounds));
         model.gradients = vec![T::ZERO; 3 * model.nodes.len()];
         model.springs = vec![T::ZERO; model.nodes.len()];
         for row in 0..model.constants.padded_rows() {
@@ -152,13 +159,16 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     pub(super) fn table_bytes(&self) -> usize {
         let entries = size_of_val(self.nodes.as_slice()) + size_of_val(self.springs.as_slice());
-        entries + size_of_val(self.gradients.as_slice()) + self.constants.bytes()
+        entries + self.sections.bytes() + size_of_val(self.gradients.as_slice()) + self.constants.bytes()
+    }
+
+    pub(super) fn section_rows(&self) -> usize {
+        self.sections.sum_rows()
     }
 
     pub(super) fn add_nodal_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
+        self.add::<false>(scratch);
         scratch.finish(out);
     }
 
@@ -171,9 +181,15 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     ) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+        self.add::<true>(scratch);
         scratch.finish(out);
+    }
+
+    fn add<const TANGENT: bool>(&self, scratch: &mut Scratch<T>) {
+        let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sections.sum_rows());
+        self.sections.add(&mut sums, &|batches, rows| {
+            dispatch!(dispatch_level(), simd => self.add_with::<_, TANGENT>(simd, [nodal, direction], batches, rows));
+        });
     }
 
     pub(super) fn add_nodal_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
@@ -181,19 +197,29 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         self.add_blocks_with(baseline(), &scratch.nodal, sink);
     }
 
-    /// The entries and the constants of each batch.
-    fn batches(&self) -> impl Iterator<Item = (Batch<'_, T>, &[T])> {
-        self.starts.windows(2).zip(self.constants.blocks()).map(|(span, constants)| {
-            let (start, end) = (span[0] as usize * T::LANES, span[1] as usize * T::LANES);
-            let gradients = &self.gradients[3 * start..3 * end];
-            (Batch { nodes: &self.nodes[start..end], gradients, springs: &self.springs[start..end] }, constants)
-        })
+    /// The entries of a batch.
+    #[inline(always)]
+    fn batch(&self, number: usize) -> Batch<'_, T> {
+        let (start, end) = (self.starts[number] as usize * T::LANES, self.starts[number + 1] as usize * T::LANES);
+        Batch {
+            nodes: &self.nodes[start..end],
+            rows: self.sections.rows(start..end),
+            gradients: &self.gradients[3 * start..3 * end],
+            springs: &self.springs[start..end],
+        }
     }
 
     #[inline(always)]
-    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (batch, constants) in self.batches() {
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, constants);
+    fn add_with<S: Simd, const TANGENT: bool>(
+        &self,
+        simd: S,
+        [x, dx]: [&[[T; 4]]; 2],
+        batches: Range<usize>,
+        out: &mut [[T; 4]],
+    ) {
+        for number in batches {
+            let batch = self.batch(number);
+            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
             let (f, pull) = batch.around::<S>(simd, x);
             let (stress, pull) = if TANGENT {
                 let (df, pull) = batch.around::<S>(simd, dx);
@@ -202,12 +228,13 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
                 (point.stress::<L>(&f), pull)
             };
             let mut sum = pull;
-            for (nodes, gradient, _) in batch.entries().skip(1) {
+            let gradients = batch.gradients.chunks_exact(3 * T::LANES);
+            for (rows, gradient) in batch.rows.chunks_exact(T::LANES).zip(gradients).skip(1) {
                 let force = stress * load_gradient::<T, S>(simd, gradient);
                 sum += force;
-                T::Lanes::<S>::scatter_add(force.to_array(), nodes, out);
+                T::Lanes::<S>::scatter_add(force.to_array(), rows, out);
             }
-            T::Lanes::<S>::scatter_add((-sum).to_array(), &batch.nodes[..T::LANES], out);
+            T::Lanes::<S>::scatter_add((-sum).to_array(), &batch.rows[..T::LANES], out);
         }
     }
 
@@ -216,10 +243,11 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
         let zero = T::Lanes::<S>::splat(simd, T::ZERO);
         let one = T::Lanes::<S>::splat(simd, T::ONE);
-        for (number, (batch, constants)) in self.batches().enumerate() {
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, constants);
+        for number in 0..self.starts.len() - 1 {
+            let batch = self.batch(number);
+            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
             let (f, _) = batch.around::<S>(simd, x);
-            let Batch { nodes, gradients, springs } = batch;
+            let Batch { nodes, gradients, springs, .. } = batch;
             let mut derivatives = [[f; 3]; 3];
             for row in 0..3 {
                 for column in 0..3 {
@@ -335,6 +363,8 @@ type Around<R> = (Mat3<R>, Vec3<R>);
 #[derive(Clone, Copy)]
 struct Batch<'a, T> {
     nodes: &'a [u32],
+    /// Where the batch sums, entry by entry.
+    rows: &'a [u32],
     gradients: &'a [T],
     springs: &'a [T],
 }

@@ -29,7 +29,7 @@ pub(crate) fn no_rows<T: Scalar, const FIELDS: usize>() -> [PatchRows<T>; FIELDS
 }
 
 /// The patches of a mesh.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Patches {
     /// Nodes of each patch, patch after patch.
     nodes: Vec<u32>,
@@ -45,25 +45,33 @@ impl Patches {
     /// Divides `cells` over the `nodes` [m]; gives the cells of each patch as well.
     pub(crate) fn new<const CORNERS: usize>(nodes: &[Vec3<f64>], cells: &[[u32; CORNERS]]) -> (Self, Vec<Vec<u32>>) {
         let parts = partition(nodes, cells, PATCH_NODES);
-        let mut patches = Self { nodes: Vec::new(), starts: vec![0], copies: Vec::new(), copy_starts: Vec::new() };
-        for part in &parts {
+        let touched = |part: &Vec<u32>| {
             let mut touched: Vec<u32> = part.iter().flat_map(|&cell| cells[cell as usize]).collect();
             touched.sort_unstable();
             touched.dedup();
+            touched
+        };
+        (Self::over(nodes.len(), parts.iter().map(touched)), parts)
+    }
+
+    /// Parts of a mesh of `nodes` nodes that touch the nodes of `parts`, in ascending order.
+    pub(crate) fn over(nodes: usize, parts: impl Iterator<Item = Vec<u32>>) -> Self {
+        let mut patches = Self { nodes: Vec::new(), starts: vec![0], copies: Vec::new(), copy_starts: Vec::new() };
+        for mut touched in parts {
             patches.nodes.append(&mut touched);
             patches.starts.push(patches.nodes.len());
         }
         patches.copies = (0..patches.nodes.len() as u32).collect();
         patches.copies.sort_by_key(|&copy| patches.nodes[copy as usize]);
-        let mut ends = vec![0; nodes.len() + 1];
+        let mut ends = vec![0; nodes + 1];
         for &node in &patches.nodes {
             ends[node as usize + 1] += 1;
         }
-        for node in 0..nodes.len() {
+        for node in 0..nodes {
             ends[node + 1] += ends[node];
         }
         patches.copy_starts = ends;
-        (patches, parts)
+        patches
     }
 
     /// How many there are.
@@ -122,6 +130,14 @@ impl Patches {
         self.for_copies(executor, out, &|sum: &mut Vec3<T>, copy| {
             let [x, y, z, _] = rows[copy];
             *sum += Vec3::new(x, y, z);
+        });
+    }
+
+    /// The same where `out` has rows as well.
+    pub(crate) fn add_up_rows<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [[T; 4]]) {
+        self.for_copies(executor, out, &|sum: &mut [T; 4], copy| {
+            let [x, y, z, _] = rows[copy];
+            *sum = [sum[0] + x, sum[1] + y, sum[2] + z, sum[3]];
         });
     }
 

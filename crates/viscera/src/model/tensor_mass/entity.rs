@@ -20,7 +20,7 @@ pub(crate) struct Corner<R> {
 }
 
 /// One kind of entity, with `NODES` corners.
-pub(crate) trait Entity<const NODES: usize> {
+pub(crate) trait Entity<const NODES: usize>: Send + Sync {
     /// Numbers stored for one.
     const COLUMNS: usize;
     /// What the tetrahedron adds (the first [`Entity::COLUMNS`] numbers), where the entity's corners are its local corners `at`.

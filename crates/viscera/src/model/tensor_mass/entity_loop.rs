@@ -1,6 +1,8 @@
 //! The loop over one kind of entity: gather displacements into lanes, apply the entity's force, scatter.
 
 use std::marker::PhantomData;
+use std::ops::Range;
+use std::sync::Arc;
 
 use fearless_simd::{Simd, dispatch};
 
@@ -9,12 +11,14 @@ use super::tensors::TetTensors;
 use crate::math::{Dual, Lanes, Real, Scalar, Vec3, baseline, dispatch_level};
 use crate::model::block_sink::{BlockSink, add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
+use crate::model::sections::{SectionSums, Sections};
 use crate::model::tet_loop::scatter_corner;
 
 /// All entities of one kind, with the sums of the tensors of the tetrahedra that touch them.
 #[derive(Debug)]
 pub(crate) struct EntityLoop<T: Scalar, E, const NODES: usize> {
     nodes: BlockTable<u32>,
+    sections: Arc<Sections>,
     stored: BlockTable<T>,
     /// How many tetrahedra still touch each entity.
     uses: Vec<u32>,
@@ -23,7 +27,13 @@ pub(crate) struct EntityLoop<T: Scalar, E, const NODES: usize> {
 
 impl<T: Scalar, E, const NODES: usize> Clone for EntityLoop<T, E, NODES> {
     fn clone(&self) -> Self {
-        Self { nodes: self.nodes.clone(), stored: self.stored.clone(), uses: self.uses.clone(), entity: PhantomData }
+        Self {
+            nodes: self.nodes.clone(),
+            sections: Arc::clone(&self.sections),
+            stored: self.stored.clone(),
+            uses: self.uses.clone(),
+            entity: PhantomData,
+        }
     }
 }
 
@@ -50,7 +60,8 @@ impl<E: Entity<NODES>, const NODES: usize> Assembly<E, NODES> {
         self.uses[entity] += 1;
     }
 
-    pub(super) fn finish<T: Scalar>(self) -> EntityLoop<T, E, NODES> {
+    /// The loop over the entities, in a body of `mesh_nodes` nodes.
+    pub(super) fn finish<T: Scalar>(self, mesh_nodes: usize) -> EntityLoop<T, E, NODES> {
         let count = self.nodes.len();
         let mut nodes = BlockTable::new(T::LANES, count, NODES, 0);
         let mut stored = BlockTable::new(T::LANES, count, E::COLUMNS, T::ZERO);
@@ -58,14 +69,20 @@ impl<E: Entity<NODES>, const NODES: usize> Assembly<E, NODES> {
             nodes.set_row(row, corners);
             stored.set_row(row, self.sums[row * E::COLUMNS..(row + 1) * E::COLUMNS].iter().map(|&v| T::from_f64(v)));
         }
-        EntityLoop { nodes, stored, uses: self.uses, entity: PhantomData }
+        let sections = Arc::new(Sections::of_table(mesh_nodes, &nodes));
+        EntityLoop { nodes, sections, stored, uses: self.uses, entity: PhantomData }
     }
 }
 
 impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     /// Size of the stored numbers [bytes].
     pub(crate) fn bytes(&self) -> usize {
-        self.nodes.bytes() + self.stored.bytes()
+        self.nodes.bytes() + self.sections.bytes() + self.stored.bytes()
+    }
+
+    /// Rows that the loop sums in.
+    pub(crate) fn sum_rows(&self) -> usize {
+        self.sections.sum_rows()
     }
 
     /// Numbers stored for an entity, for comparisons in tests.
@@ -90,13 +107,22 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     /// Adds the forces at the displacements and weights in `nodal`.
     ///
     /// `ADAPTIVE` tells that weights may be 0: a batch whose corners are all linear is spared the non-linear part.
-    pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
-        dispatch!(dispatch_level(), simd => self.add_forces_with::<_, ADAPTIVE>(simd, nodal, out));
+    pub(crate) fn add_forces<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], sums: &mut SectionSums<'_, T>) {
+        self.sections.add(sums, &|batches, rows| {
+            dispatch!(dispatch_level(), simd => self.add_forces_with::<_, ADAPTIVE>(simd, nodal, batches, rows));
+        });
     }
 
     #[inline(always)]
-    fn add_forces_with<S: Simd, const ADAPTIVE: bool>(&self, simd: S, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
+    fn add_forces_with<S: Simd, const ADAPTIVE: bool>(
+        &self,
+        simd: S,
+        nodal: &[[T; 4]],
+        batches: Range<usize>,
+        out: &mut [[T; 4]],
+    ) {
+        for batch in batches {
+            let (nodes, stored) = (self.nodes.block(batch), self.stored.block(batch));
             let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
             let linear = E::linear(&c, &corners);
@@ -114,22 +140,37 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
             } else if linear.is_none() {
                 continue;
             }
-            scatter_corners(simd, forces, nodes, out);
+            scatter_corners(simd, forces, self.rows(batch), out);
         }
     }
 
+    /// Where a batch sums.
+    #[inline(always)]
+    fn rows(&self, batch: usize) -> &[u32] {
+        self.sections.rows(batch * NODES * T::LANES..(batch + 1) * NODES * T::LANES)
+    }
+
     /// Adds the derivative of the forces along the displacements in `direction`, weights held.
-    pub(crate) fn add_product(&self, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [[T; 4]]) {
-        dispatch!(dispatch_level(), simd => self.add_product_with(simd, nodal, direction, out));
+    pub(crate) fn add_product(&self, nodal: &[[T; 4]], direction: &[[T; 4]], sums: &mut SectionSums<'_, T>) {
+        self.sections.add(sums, &|batches, rows| {
+            dispatch!(dispatch_level(), simd => self.add_product_with(simd, [nodal, direction], batches, rows));
+        });
     }
 
     #[inline(always)]
-    fn add_product_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], direction: &[[T; 4]], out: &mut [[T; 4]]) {
-        for (nodes, stored) in self.nodes.blocks().zip(self.stored.blocks()) {
+    fn add_product_with<S: Simd>(
+        &self,
+        simd: S,
+        [nodal, direction]: [&[[T; 4]]; 2],
+        batches: Range<usize>,
+        out: &mut [[T; 4]],
+    ) {
+        for batch in batches {
+            let (nodes, stored) = (self.nodes.block(batch), self.stored.block(batch));
             let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
-            scatter_corners(simd, forces_along::<_, E, NODES>(&c, &at, &along), nodes, out);
+            scatter_corners(simd, forces_along::<_, E, NODES>(&c, &at, &along), self.rows(batch), out);
         }
     }
 

@@ -28,7 +28,9 @@ pub(crate) use self::entity::{LinearEdge, LinearVertex};
 pub(crate) use self::entity_loop::EntityLoop;
 pub(crate) use self::frame::Frame;
 pub(crate) use self::shape::RestShape;
+use super::sections::{SectionScratch, SectionSums};
 use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use crate::executor::{NodeBlocks, ReadBlocks, node_blocks};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -132,20 +134,23 @@ impl<T: Scalar> TensorMassModel<T> {
     }
 
     /// Makes displacements in the frame of places, and sets the weight of the non-linear part.
-    fn enter(&self, frame: &Frame<T>, nodal: &mut [[T; 4]]) {
-        for (row, (arm, rest)) in nodal.iter_mut().zip(self.arms.iter().zip(&self.rest)) {
-            let x = Vec3::new(row[0], row[1], row[2]);
-            let weight = if self.is_nonlinear_at(x - *rest) { T::ONE } else { T::ZERO };
-            let u = frame.displacement(x, *arm);
-            *row = [u.x, u.y, u.z, weight];
-        }
+    fn enter(&self, frame: &Frame<T>, scratch: &mut Scratch<T>) {
+        let data = (NodeBlocks(&mut scratch.nodal), (ReadBlocks(&self.arms), ReadBlocks(&self.rest)));
+        scratch.executor.each(node_blocks(self.rest.len()), data, &|_, (nodal, (arms, rest))| {
+            for (row, (arm, rest)) in nodal.0.iter_mut().zip(arms.0.iter().zip(rest.0)) {
+                let x = Vec3::new(row[0], row[1], row[2]);
+                let weight = if self.is_nonlinear_at(x - *rest) { T::ONE } else { T::ZERO };
+                let u = frame.displacement(x, *arm);
+                *row = [u.x, u.y, u.z, weight];
+            }
+        });
     }
 
-    fn add_forces_at<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], out: &mut [[T; 4]]) {
-        self.vertices.add_forces::<ADAPTIVE>(nodal, out);
-        self.edges.add_forces::<ADAPTIVE>(nodal, out);
-        self.triangles.add_forces::<ADAPTIVE>(nodal, out);
-        self.tetrahedra.add_forces::<ADAPTIVE>(nodal, out);
+    fn add_forces_at<const ADAPTIVE: bool>(&self, nodal: &[[T; 4]], sums: &mut SectionSums<'_, T>) {
+        self.vertices.add_forces::<ADAPTIVE>(nodal, sums);
+        self.edges.add_forces::<ADAPTIVE>(nodal, sums);
+        self.triangles.add_forces::<ADAPTIVE>(nodal, sums);
+        self.tetrahedra.add_forces::<ADAPTIVE>(nodal, sums);
     }
 }
 
@@ -157,13 +162,13 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         let frame = self.frame(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        self.enter(&frame, nodal);
+        self.enter(&frame, scratch);
+        let SectionScratch { nodal, mut sums, .. } = scratch.sections(self.sum_rows());
         match self.squared_threshold {
-            Some(_) => self.add_forces_at::<true>(nodal, forces),
-            None => self.add_forces_at::<false>(nodal, forces),
+            Some(_) => self.add_forces_at::<true>(nodal, &mut sums),
+            None => self.add_forces_at::<false>(nodal, &mut sums),
         }
-        frame.leave(forces);
+        frame.leave(&mut scratch.forces);
         scratch.finish(out);
     }
 
@@ -171,22 +176,29 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
         scratch.start(x);
         scratch.start_direction(dx);
         let frame = self.frame(x);
-        let Scratch { nodal, direction, forces, .. } = scratch;
-        self.enter(&frame, nodal);
-        frame.enter(direction);
-        self.vertices.add_product(nodal, direction, forces);
-        self.edges.add_product(nodal, direction, forces);
-        self.triangles.add_product(nodal, direction, forces);
-        self.tetrahedra.add_product(nodal, direction, forces);
-        frame.leave(forces);
+        self.enter(&frame, scratch);
+        frame.enter(&mut scratch.direction);
+        let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sum_rows());
+        self.vertices.add_product(nodal, direction, &mut sums);
+        self.edges.add_product(nodal, direction, &mut sums);
+        self.triangles.add_product(nodal, direction, &mut sums);
+        self.tetrahedra.add_product(nodal, direction, &mut sums);
+        frame.leave(&mut scratch.forces);
         scratch.finish(out);
+    }
+
+    fn sum_rows(&self) -> usize {
+        let Self { vertices, edges, triangles, tetrahedra, .. } = self;
+        [vertices.sum_rows(), edges.sum_rows(), triangles.sum_rows(), tetrahedra.sum_rows()]
+            .into_iter()
+            .fold(0, usize::max)
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
         let frame = self.frame(x);
-        let nodal = &mut scratch.nodal;
-        self.enter(&frame, nodal);
+        self.enter(&frame, scratch);
+        let nodal = &scratch.nodal;
         let mut sink = frame.leaving(sink);
         self.vertices.add_blocks(nodal, &mut sink);
         self.edges.add_blocks(nodal, &mut sink);

@@ -84,7 +84,7 @@ impl RestShape {
                 assembly.add(entity, &tensors, at);
             }
         }
-        assembly.finish()
+        assembly.finish(self.mesh.nodes.len())
     }
 
     /// The vertices of a cell, each with the local corner that it is.

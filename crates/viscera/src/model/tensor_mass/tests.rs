@@ -11,6 +11,8 @@ use super::tensors::TetTensors;
 use crate::material::{Lame, LawFamily, StVenantKirchhoff, Tissue, TransverseStVenantKirchhoff};
 use crate::math::{Mat3, Vec3};
 use crate::mesh::{TetMesh, TetTopology};
+use crate::model::Scratch;
+use crate::model::sections::SectionScratch;
 use crate::model::tet_loop::RestTet;
 
 const TABLES: &str = include_str!("../../../tests/data/references/A08_tensor_mass_tables.json");
@@ -159,13 +161,16 @@ impl Tables {
     }
 
     fn forces(&self, u: &[Vec3<f64>], scale: f64) -> Vec<Vec3<f64>> {
-        let nodal: Vec<[f64; 4]> = u.iter().map(|&u| [u.x * scale, u.y * scale, u.z * scale, 1.0]).collect();
-        let mut rows = vec![[0.0; 4]; u.len()];
-        self.vertices.add_forces::<false>(&nodal, &mut rows);
-        self.edges.add_forces::<false>(&nodal, &mut rows);
-        self.triangles.add_forces::<false>(&nodal, &mut rows);
-        self.tetrahedra.add_forces::<false>(&nodal, &mut rows);
-        rows.into_iter().map(|[x, y, z, _]| Vec3::new(x, y, z)).collect()
+        let Self { vertices, edges, triangles, tetrahedra, .. } = self;
+        let most = [vertices.sum_rows(), edges.sum_rows(), triangles.sum_rows(), tetrahedra.sum_rows()];
+        let mut scratch = Scratch::new(u.len());
+        scratch.nodal = u.iter().map(|&u| [u.x * scale, u.y * scale, u.z * scale, 1.0]).collect();
+        let SectionScratch { nodal, mut sums, .. } = scratch.sections(most.into_iter().fold(0, usize::max));
+        vertices.add_forces::<false>(nodal, &mut sums);
+        edges.add_forces::<false>(nodal, &mut sums);
+        triangles.add_forces::<false>(nodal, &mut sums);
+        tetrahedra.add_forces::<false>(nodal, &mut sums);
+        scratch.forces.into_iter().map(|[x, y, z, _]| Vec3::new(x, y, z)).collect()
     }
 
     fn remove(&mut self, cell: usize) {

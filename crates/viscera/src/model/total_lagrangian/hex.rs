@@ -3,11 +3,14 @@
 //! F(ξ) = Σ_a x_a ∇N_a(ξ)ᵀ,   f_a = Σ_q w_q det J_q P(F_q) ∇N_a(ξ_q), with gradients over the rest shape.
 
 use std::marker::PhantomData;
+use std::ops::Range;
+use std::sync::Arc;
 
 use fearless_simd::{Simd, dispatch};
 
 use super::super::block_sink::{add_block_column, unit_displacement};
 use super::super::block_table::BlockTable;
+use super::super::sections::{SectionScratch, Sections};
 use super::super::tet_loop::{gather_corner, scatter_corner};
 use super::super::{BlockSink, ForceModel, ModelError, Scratch};
 use super::TotalLagrangian;
@@ -22,6 +25,7 @@ pub(in crate::model) const POINT: usize = 25;
 #[derive(Debug)]
 pub(super) struct HexLoop<T: Scalar, L> {
     corners: BlockTable<u32>,
+    sections: Arc<Sections>,
     points: BlockTable<T>,
     parameters: BlockTable<T>,
     point_count: usize,
@@ -32,6 +36,7 @@ impl<T: Scalar, L> Clone for HexLoop<T, L> {
     fn clone(&self) -> Self {
         Self {
             corners: self.corners.clone(),
+            sections: Arc::clone(&self.sections),
             points: self.points.clone(),
             parameters: self.parameters.clone(),
             point_count: self.point_count,
@@ -47,6 +52,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
         let point_count = rule.point_count();
         let mut hexes = Self {
             corners: BlockTable::new(T::LANES, cells, 8, 0),
+            sections: Arc::default(),
             points: BlockTable::new(T::LANES, cells, point_count * POINT, T::ZERO),
             parameters: BlockTable::new(T::LANES, cells, L::PARAMETERS.len(), T::ZERO),
             point_count,
@@ -65,6 +71,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
                 hexes.deactivate(row);
             }
         }
+        hexes.sections = Arc::new(Sections::of_table(mesh.nodes.len(), &hexes.corners));
         Ok(hexes)
     }
 
@@ -76,17 +83,32 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
 
     /// Adds the forces at `x`, or with `TANGENT` their derivative along `dx`.
     #[inline(always)]
-    fn add_with<S: Simd, const TANGENT: bool>(&self, simd: S, x: &[[T; 4]], dx: &[[T; 4]], out: &mut [[T; 4]]) {
-        let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
-        for ((nodes, points), parameters) in blocks {
+    fn add_with<S: Simd, const TANGENT: bool>(
+        &self,
+        simd: S,
+        [x, dx]: [&[[T; 4]]; 2],
+        batches: Range<usize>,
+        out: &mut [[T; 4]],
+    ) {
+        for batch in batches {
+            let (nodes, points) = (self.corners.block(batch), self.points.block(batch));
+            let parameters = self.parameters.block(batch);
             let parameters = load_parameters::<T, S, L>(simd, parameters);
             let place = gather_corners(simd, x, nodes);
             let direction = if TANGENT { gather_corners(simd, dx, nodes) } else { place };
             let forces = element_forces::<T, S, L, TANGENT>(simd, &parameters, points, &place, &direction);
+            let rows = self.sections.rows(batch * 8 * T::LANES..(batch + 1) * 8 * T::LANES);
             for corner in 0..8 {
-                scatter_corner::<T, S>(forces[corner], nodes, corner, out);
+                scatter_corner::<T, S>(forces[corner], rows, corner, out);
             }
         }
+    }
+
+    fn add<const TANGENT: bool>(&self, scratch: &mut Scratch<T>) {
+        let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sections.sum_rows());
+        self.sections.add(&mut sums, &|batches, rows| {
+            dispatch!(dispatch_level(), simd => self.add_with::<_, TANGENT>(simd, [nodal, direction], batches, rows));
+        });
     }
 
     #[inline(always)]
@@ -182,16 +204,14 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        let Scratch { nodal, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, false>(simd, nodal, nodal, forces));
+        self.add::<false>(scratch);
         scratch.finish(out);
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
         scratch.start_direction(dx);
-        let Scratch { nodal, direction, forces, .. } = scratch;
-        dispatch!(dispatch_level(), simd => self.add_with::<_, true>(simd, nodal, direction, forces));
+        self.add::<true>(scratch);
         scratch.finish(out);
     }
 
@@ -225,8 +245,12 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
         }
     }
 
+    fn sum_rows(&self) -> usize {
+        self.sections.sum_rows()
+    }
+
     fn bytes(&self) -> usize {
-        self.corners.bytes() + self.points.bytes() + self.parameters.bytes()
+        self.corners.bytes() + self.sections.bytes() + self.points.bytes() + self.parameters.bytes()
     }
 
     fn clone_box(&self) -> Box<dyn ForceModel<T>> {

@@ -83,12 +83,11 @@ impl<T: Scalar> FineBlocks<T> {
         self.blocks.fill(Mat3::ZERO);
     }
 
-    /// Writes Wᵀ S (`scale` K + `masses`) S W to `coarse`.
+    /// Writes Wᵀ S (K + `masses`) S W to `coarse`.
     pub(super) fn restrict(
         &mut self,
         interpolation: &Interpolation<T>,
         filters: &[Filter<T>],
-        scale: T,
         masses: &[T],
         coarse: &mut LevelMatrix<T>,
     ) {
@@ -104,7 +103,7 @@ impl<T: Scalar> FineBlocks<T> {
             row.fill(Mat3::ZERO);
             for index in self.starts[node] as usize..self.starts[node + 1] as usize {
                 let column = self.columns[index] as usize;
-                let mut block = self.blocks[index] * scale;
+                let mut block = self.blocks[index];
                 if column == node {
                     block = (block + Mat3::diagonal(masses[node])) * T::from_f64(0.5);
                 }

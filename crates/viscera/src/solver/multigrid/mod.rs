@@ -71,18 +71,17 @@ impl<T: Scalar> Multigrid<T> {
         self.blocks.clear();
     }
 
-    /// Prepares for the matrix A = `scale` K + `masses` I [kg/s²], from the blocks of K that were added, products with A, and the
+    /// Prepares for the matrix A = K + `masses` I [kg/s²], from the blocks of K that were added, products with A, and the
     /// inverse blocks on A's diagonal. Takes as long as a dozen products; adding the blocks, three times that.
     pub fn set_up<'a>(
         &'a mut self,
         matrix: &mut dyn LinearOperator<T>,
         diagonal: &'a mut BlockJacobi<T>,
         filters: &[Filter<T>],
-        scale: T,
         masses: &[T],
         executor: &Executor,
     ) -> Cycle<'a, T> {
-        self.blocks.restrict(&self.interpolation, filters, scale, masses, &mut self.levels[0].matrix);
+        self.blocks.restrict(&self.interpolation, filters, masses, &mut self.levels[0].matrix);
         for number in 0..self.levels.len() {
             let (own, coarser) = self.levels.split_at_mut(number + 1);
             own[number].set_up(coarser.first_mut());

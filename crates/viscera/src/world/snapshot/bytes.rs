@@ -5,7 +5,7 @@
 //! | 8 | `viscera\0` |
 //! | 2 | format, little-endian |
 //! | 1 | bits of a number: 32 or 64 |
-//! | … | steps, number of instruments, and of each body its fingerprint and its state, as postcard encodes them |
+//! | … | steps, the tools and whether each is there, forces of attachments, and of each body its fingerprint and its state, as postcard encodes them |
 //! | 4 | CRC-32 of all before, little-endian |
 //!
 //! Numbers keep their bits. Force models are left out: they follow from the mesh and the cells that were removed, in their
@@ -13,12 +13,14 @@
 
 use super::{BodySnapshot, Snapshot, SnapshotError};
 use crate::body::{BodyError, BodyState, Models, NodeMotion, SimulatedBody};
+use crate::instrument::ToolState;
+use crate::math::Vec3;
 use crate::model::Precision;
 use crate::world::World;
 
 const MARK: &[u8; 8] = b"viscera\0";
 /// Grows with every change of what is written.
-const FORMAT: u16 = 1;
+const FORMAT: u16 = 2;
 const HEAD: usize = MARK.len() + 3;
 const CHECKSUM: usize = 4;
 
@@ -33,7 +35,7 @@ impl<T: Precision> Snapshot<T> {
         let mut head = MARK.to_vec();
         head.extend(FORMAT.to_le_bytes());
         head.push(bits::<T>());
-        let mut bytes = postcard::to_extend(&(self.steps, self.instruments, bodies), head)
+        let mut bytes = postcard::to_extend(&(self.steps, &self.tools, &self.attachments, bodies), head)
             .expect("numbers, and lists of known length, always have an encoding");
         let checksum = crc32fast::hash(&bytes);
         bytes.extend(checksum.to_le_bytes());
@@ -42,7 +44,7 @@ impl<T: Precision> Snapshot<T> {
 }
 
 /// What stands between head and checksum.
-type Payload<T> = (u64, usize, Vec<(u32, BodyState<T>)>);
+type Payload<T> = (u64, Vec<(bool, ToolState)>, Vec<Vec3<f64>>, Vec<(u32, BodyState<T>)>);
 
 impl<T: Precision> World<T> {
     /// Reads a snapshot of this world, or of one that was built alike, from bytes. The world itself is not changed:
@@ -54,8 +56,9 @@ impl<T: Precision> World<T> {
     /// # Errors
     /// [`SnapshotError`]: bytes of something else, damaged, of another version, precision or world.
     pub fn read_snapshot(&self, bytes: &[u8]) -> Result<Snapshot<T>, SnapshotError> {
-        let (steps, instruments, bodies) = decode::<T>(bytes)?;
-        if instruments != self.instruments.len() || bodies.len() != self.bodies.len() {
+        let (steps, tools, attachments, bodies) = decode::<T>(bytes)?;
+        let instruments = tools.len();
+        if !self.has_tools(&tools) || bodies.len() != self.bodies.len() {
             let count = |bodies, instruments| format!("{bodies} bodies and {instruments} instruments");
             let (its, here) = (count(bodies.len(), instruments), count(self.bodies.len(), self.instruments.len()));
             return Err(SnapshotError::Foreign { what: format!("it has {its}, and this one {here}") });
@@ -68,7 +71,11 @@ impl<T: Precision> World<T> {
             Ok(body.with_models(state)?)
         };
         let bodies = self.bodies.iter().zip(bodies).map(of_body).collect::<Result<_, _>>()?;
-        Ok(Snapshot { steps, bodies, instruments })
+        if attachments.len() != self.attachments.len() {
+            let what = format!("it has {} attachments, and this one {}", attachments.len(), self.attachments.len());
+            return Err(SnapshotError::Foreign { what });
+        }
+        Ok(Snapshot { steps, bodies, tools, attachments })
     }
 }
 
@@ -114,6 +121,8 @@ fn fits<T: Precision>(state: &BodyState<T>, body: &SimulatedBody<T>, instruments
         && state.removals.cells().iter().all(once)
         && state.removed == removed
         && state.removed_count == state.removals.cells().len()
+        && state.heat.len() == cells
+        && state.seared.len() == nodes
 }
 
 impl<T: Precision> SimulatedBody<T> {

@@ -5,7 +5,8 @@ pub use error::SnapshotError;
 
 use super::{World, WorldError};
 use crate::body::{BodyState, SimulatedBody};
-use crate::math::Scalar;
+use crate::instrument::ToolState;
+use crate::math::{Scalar, Vec3};
 use crate::model::frequency::FrequencyBound;
 
 /// All that changes about a world, at one moment: put back, it goes on with the same bits, also after cuts. As bytes
@@ -13,7 +14,10 @@ use crate::model::frequency::FrequencyBound;
 pub struct Snapshot<T: Scalar> {
     steps: u64,
     bodies: Vec<BodySnapshot<T>>,
-    instruments: usize,
+    /// Every tool, and whether it is there.
+    tools: Vec<(bool, ToolState)>,
+    /// Forces of the attachments [N].
+    attachments: Vec<Vec3<f64>>,
 }
 
 /// All that changes about a body.
@@ -33,7 +37,10 @@ impl<T: Scalar> World<T> {
             fingerprint: body.fingerprint,
         };
         let bodies = self.bodies.iter().map(of_body).collect();
-        Snapshot { steps: self.steps, bodies, instruments: self.instruments.len() }
+        let tools = self.instruments.iter().zip(&self.tools);
+        let tools = tools.map(|(instrument, &tool)| (instrument.is_some(), tool)).collect();
+        let attachments = self.attachments.iter().map(|ties| ties.force).collect();
+        Snapshot { steps: self.steps, bodies, tools, attachments }
     }
 
     /// Goes back to a snapshot of this world.
@@ -41,7 +48,8 @@ impl<T: Scalar> World<T> {
     /// # Errors
     /// [`WorldError::ForeignSnapshot`] for a snapshot of a world with other bodies or instruments; nothing is changed.
     pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), WorldError> {
-        let fits = self.instruments.len() == snapshot.instruments
+        let fits = self.has_tools(&snapshot.tools)
+            && self.attachments.len() == snapshot.attachments.len()
             && self.bodies.len() == snapshot.bodies.len()
             && self.bodies.iter().zip(&snapshot.bodies).all(|(body, of_body)| body.fingerprint == of_body.fingerprint);
         if !fits {
@@ -52,8 +60,17 @@ impl<T: Scalar> World<T> {
             body.state = of_body.state.clone();
             body.is_linearized = false;
             body.frequency = of_body.frequency.clone_box();
+            body.update_skin();
         }
-        self.move_tips(self.time());
+        self.tools.iter_mut().zip(&snapshot.tools).for_each(|(tool, &(_, kept))| *tool = kept);
+        self.attachments.iter_mut().zip(&snapshot.attachments).for_each(|(ties, &force)| ties.force = force);
+        self.reserve_for_tools();
         Ok(())
+    }
+
+    /// Whether tools are there, and missing, as they are here.
+    fn has_tools(&self, tools: &[(bool, ToolState)]) -> bool {
+        self.instruments.len() == tools.len()
+            && self.instruments.iter().zip(tools).all(|(instrument, (there, _))| instrument.is_some() == *there)
     }
 }

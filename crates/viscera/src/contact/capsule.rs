@@ -1,7 +1,8 @@
+use super::closest::closest_of_segments;
 use crate::math::Vec3;
 use crate::mesh::{Point, TET_EDGES, TET_FACES};
 
-/// A ball swept along a line: what a round tip covers between two moments.
+/// A ball swept along a line: a rod with round ends, or what a round tip covers between two moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
     /// One end of the line [m].
@@ -75,33 +76,9 @@ fn squared_distance_to_inside(&[a, b, c]: &[Point; 3], p: Point) -> Option<f64> 
 }
 
 /// Squared distance between two segments, degenerate ones included.
-///
-/// Source: Ericson, Real-Time Collision Detection (2005), section 5.1.9.
 fn squared_distance_of_segments(p1: Point, q1: Point, p2: Point, q2: Point) -> f64 {
-    let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
-    let (a, e, f) = (d1.squared_norm(), d2.squared_norm(), d2.dot(r));
-    let clamp = |value: f64| value.clamp(0.0, 1.0);
-    let (s, t) = if a == 0.0 {
-        (0.0, if e == 0.0 { 0.0 } else { clamp(f / e) })
-    } else {
-        let c = d1.dot(r);
-        if e == 0.0 {
-            (clamp(-c / a), 0.0)
-        } else {
-            let b = d1.dot(d2);
-            let denominator = a * e - b * b;
-            let s = if denominator > 0.0 { clamp((b * f - c * e) / denominator) } else { 0.0 };
-            let t = (b * s + f) / e;
-            if t < 0.0 {
-                (clamp(-c / a), 0.0)
-            } else if t > 1.0 {
-                (clamp((b - c) / a), 1.0)
-            } else {
-                (s, t)
-            }
-        }
-    };
-    (p1 + d1 * s - p2 - d2 * t).squared_norm()
+    let (s, t) = closest_of_segments(p1, q1, p2, q2);
+    (p1 + (q1 - p1) * s - p2 - (q2 - p2) * t).squared_norm()
 }
 
 #[cfg(test)]

@@ -1,0 +1,14 @@
+//! A session of Viscera behind a WebSocket, and the page that drives it.
+//!
+//! [`Server::start`] binds to an address and serves the page at `/` and the session at `/ws`. The simulation runs on a thread of its
+//! own; connections share its pictures, and each shows the newest when it has shown the last. `docs/protocol.md` describes the
+//! messages.
+
+mod connection;
+mod guard;
+mod page;
+mod room;
+mod server;
+mod simulation;
+
+pub use server::{ServeError, Server, Settings};

@@ -1,0 +1,133 @@
+//! The thread on which the session lives.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use tokio::runtime::Handle;
+use tokio::sync::{broadcast, mpsc, watch};
+use tokio::time::timeout;
+use viscera_session::message::{Answer, Notice};
+use viscera_session::{Picture, Session};
+
+use crate::room::Room;
+
+/// Time from one picture to the next.
+const FRAME: Duration = Duration::from_micros(16_667);
+/// How often somebody who waits for nothing looks up.
+const IDLE: Duration = Duration::from_millis(100);
+/// Commands that wait for the thread; whoever sends more waits too.
+const WAITING: usize = 64;
+/// Answers that wait for a slow connection; what is older is lost to it.
+const ANSWERS: usize = 256;
+
+/// Whom an answer is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Audience {
+    Controller,
+    Everybody,
+}
+
+/// An answer as it goes out.
+#[derive(Clone, Debug)]
+pub(crate) struct Outgoing {
+    pub(crate) audience: Audience,
+    pub(crate) bytes: Arc<[u8]>,
+}
+
+/// The ways to the thread and back.
+#[derive(Clone)]
+pub(crate) struct Stage {
+    pub(crate) commands: mpsc::Sender<Vec<u8>>,
+    pub(crate) pictures: watch::Receiver<Option<Picture>>,
+    pub(crate) answers: broadcast::Sender<Outgoing>,
+    pub(crate) catalogue: Arc<[u8]>,
+    pub(crate) threads: usize,
+}
+
+impl Stage {
+    /// Starts the thread. It ends when nobody can send commands any more.
+    pub(crate) fn start(session: Session, room: Room, handle: Handle) -> std::io::Result<Self> {
+        let (commands, received) = mpsc::channel(WAITING);
+        let (show, pictures) = watch::channel(None);
+        let answers = broadcast::Sender::new(ANSWERS);
+        let (catalogue, threads) = (session.catalogue(), session.threads());
+        let player = Player { session, received, show, answers: answers.clone(), room, handle };
+        std::thread::Builder::new().name("simulation".into()).spawn(move || player.run())?;
+        Ok(Self { commands, pictures, answers, catalogue, threads })
+    }
+}
+
+struct Player {
+    session: Session,
+    received: mpsc::Receiver<Vec<u8>>,
+    show: watch::Sender<Option<Picture>>,
+    answers: broadcast::Sender<Outgoing>,
+    room: Room,
+    handle: Handle,
+}
+
+impl Player {
+    fn run(mut self) {
+        let mut before = Instant::now();
+        let mut next_picture = before;
+        loop {
+            let now = Instant::now();
+            // Nobody looks on: time stands still.
+            if !self.room.is_empty() {
+                self.session.elapse((now - before).as_secs_f64());
+            }
+            before = now;
+            while self.session.work() && Instant::now() < now + FRAME {
+                self.take_waiting_commands();
+            }
+            self.session.give_up();
+            self.answer();
+            if Instant::now() >= next_picture {
+                if let Some(picture) = self.session.picture() {
+                    self.show.send_replace(Some(picture));
+                }
+                // Evenly, but not faster to make up for what came late.
+                next_picture = (next_picture + FRAME).max(Instant::now());
+            }
+            if !self.wait(next_picture) {
+                return;
+            }
+        }
+    }
+
+    fn take_waiting_commands(&mut self) {
+        while let Ok(command) = self.received.try_recv() {
+            self.session.receive(&command);
+        }
+    }
+
+    /// Waits for a command, a step or a picture, whichever comes first; gives whether anybody can still send commands.
+    fn wait(&mut self, next_picture: Instant) -> bool {
+        let until_picture = next_picture.saturating_duration_since(Instant::now());
+        let pause = match self.session.time_to_next_step() {
+            _ if self.room.is_empty() => IDLE,
+            Some(due) => until_picture.min(Duration::from_secs_f64(due.min(1.0))),
+            None => until_picture.max(Duration::from_millis(1)),
+        };
+        // The timer is made inside, where there is a runtime to make it with.
+        match self.handle.block_on(async { timeout(pause, self.received.recv()).await }) {
+            Ok(None) => return false,
+            Ok(Some(command)) => self.session.receive(&command),
+            Err(_) => {}
+        }
+        self.take_waiting_commands();
+        true
+    }
+
+    fn answer(&mut self) {
+        for answer in self.session.take_answers() {
+            let audience = match &answer {
+                Answer::Refusal(_) | Answer::File(_) => Audience::Controller,
+                Answer::Notice(Notice { .. }) => Audience::Everybody,
+                _ => Audience::Everybody,
+            };
+            // Nobody may be listening.
+            let _ = self.answers.send(Outgoing { audience, bytes: answer.encode().into() });
+        }
+    }
+}

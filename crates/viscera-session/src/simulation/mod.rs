@@ -1,0 +1,14 @@
+//! A scene being played: its world, the ghost beside it, its surfaces and instruments.
+
+mod build;
+pub(crate) mod colour;
+mod ghost;
+mod play;
+mod surface;
+pub(crate) mod tools;
+mod world;
+
+pub(crate) use build::Change;
+pub(crate) use play::{Kept, Play};
+pub(crate) use surface::Surface;
+pub(crate) use world::AnyWorld;

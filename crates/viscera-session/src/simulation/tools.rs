@@ -1,0 +1,243 @@
+//! The instruments of a world, as a page sees and leads them.
+
+use serde::{Deserialize, Serialize};
+use viscera::curve::Curve;
+use viscera::instrument::{
+    Capsule, Cautery, Grasper, Instrument, InstrumentKind, Jaws, Mount, Probe, Shaft, ToolInput, ToolPose,
+};
+use viscera::math::{Scalar, Vec3};
+use viscera::world::{BodyId, InstrumentId, World, WorldError};
+
+use super::world::{AnyWorld, with};
+use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Jaw, Refusal, Rod};
+use crate::refuse;
+
+/// Radius of a scene [m] for which instruments have their real measures; much smaller and much larger ones get instruments in
+/// proportion.
+const USUAL_RADIUS: f64 = 0.15;
+/// Power of the cautery [W], as surgeons set it for cutting.
+const POWER: f64 = 60.0;
+/// Share of the heat of evaporation that a cell takes in before it goes. A real cut is a line: to evaporate whole cells of 16 mm
+/// edges takes half a minute, and with this share a quarter of a second.
+const HASTE: f64 = 0.002;
+
+/// What a hand asks of an instrument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hand {
+    pub(crate) tip: [f64; 3],
+    pub(crate) direction: [f64; 3],
+    pub(crate) roll: f64,
+    pub(crate) trigger: f64,
+}
+
+/// One that was brought in: its number in the world is its place among all that there ever were.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", deny_unknown_fields)]
+pub(crate) struct Tool {
+    pub(crate) kind: String,
+    pub(crate) name: String,
+    /// Whether the scene brought it in: its world is built with it.
+    pub(crate) of_scene: bool,
+    /// Whether the scene leads it.
+    pub(crate) scripted: bool,
+    pub(crate) removed: bool,
+    /// What the page called the moment of the last move.
+    #[serde(skip)]
+    pub(crate) stamp: Option<f64>,
+}
+
+impl Hand {
+    fn input(&self) -> ToolInput {
+        let pose = ToolPose { tip: self.tip.into(), direction: self.direction.into(), roll: self.roll };
+        ToolInput { pose, trigger: self.trigger }
+    }
+}
+
+fn id(instrument: u32) -> InstrumentId {
+    InstrumentId(instrument as usize)
+}
+
+/// The instruments that can be brought in.
+pub(crate) fn entries() -> Vec<InstrumentEntry> {
+    let entry = |kind: &InstrumentKind| {
+        let (title, summary, trigger) = match kind {
+            InstrumentKind::Probe => ("Probe", "A round rod that pushes tissue and slides along it.", ""),
+            InstrumentKind::Grasper => ("Grasper", "Jaws that hold what they close on.", "closes the jaws"),
+            InstrumentKind::Cautery => {
+                ("Cautery", "A hot hook that burns away what it stays on.", "switches the current on")
+            }
+        };
+        InstrumentEntry {
+            kind: kind.name().into(),
+            title: title.into(),
+            summary: summary.into(),
+            trigger: trigger.into(),
+        }
+    };
+    InstrumentKind::ALL.iter().map(entry).collect()
+}
+
+/// Gives a world that was just built the instruments that another one has, under the same numbers.
+pub(crate) fn match_slots(world: &mut AnyWorld, radius: f64, tools: &[Tool]) -> Result<(), Box<Refusal>> {
+    for (number, tool) in tools.iter().enumerate() {
+        let hand = Hand { tip: [0.0; 3], direction: [0.0, -1.0, 0.0], roll: 0.0, trigger: 0.0 };
+        if !tool.of_scene {
+            add(world, &tool.kind, radius, &hand).map_err(refuse::because)?;
+        }
+        if tool.removed {
+            remove(world, number as u32).map_err(refuse::because)?;
+        }
+    }
+    Ok(())
+}
+
+/// Leads the instruments of a world that begins again to where hands hold them. Those that a hand brought in are there at once: on
+/// the way they would sweep up what is in between.
+pub(crate) fn lead_as_before(
+    world: &mut AnyWorld,
+    radius: f64,
+    before: &AnyWorld,
+    tools: &[Tool],
+) -> Result<(), Box<Refusal>> {
+    for (number, tool) in tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
+        let number = number as u32;
+        let state = with!(before, before => *before.tool(id(number)));
+        let Some(hand) = state.hand else { continue };
+        let hand = Hand {
+            tip: hand.pose.tip.to_array(),
+            direction: hand.pose.direction.to_array(),
+            roll: hand.pose.roll,
+            trigger: hand.trigger,
+        };
+        if !tool.of_scene {
+            place(world, number, &tool.kind, radius, &hand).map_err(refuse::because)?;
+        }
+        lead(world, number, &hand).map_err(refuse::because)?;
+    }
+    Ok(())
+}
+
+/// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m].
+pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+    let kind = named(kind)?;
+    with!(world, world => world.add_instrument(instrument(kind, radius, hand)).map(|_| ())).map_err(text)
+}
+
+/// Puts an instrument where the hand is, at once.
+fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+    let kind = named(kind)?;
+    with!(world, world => world.replace_instrument(id(number), instrument(kind, radius, hand))).map_err(text)
+}
+
+/// Says where an instrument should be at the end of the next step.
+pub(crate) fn lead(world: &mut AnyWorld, instrument: u32, hand: &Hand) -> Result<(), String> {
+    with!(world, world => world.set_tool(id(instrument), hand.input())).map_err(text)
+}
+
+pub(crate) fn remove(world: &mut AnyWorld, instrument: u32) -> Result<(), String> {
+    with!(world, world => world.remove_instrument(id(instrument))).map_err(text)
+}
+
+pub(crate) fn kind(world: &AnyWorld, instrument: u32) -> String {
+    with!(world, world => world.instrument(id(instrument)).kind().into())
+}
+
+fn text(error: WorldError) -> String {
+    error.to_string()
+}
+
+fn named(kind: &str) -> Result<InstrumentKind, String> {
+    let known = InstrumentKind::ALL.iter().find(|known| known.name() == kind);
+    known.copied().ok_or_else(|| format!("there is no instrument `{kind}`"))
+}
+
+/// Factor on the real measures of instruments for bodies within a ball of `radius` [m].
+fn proportion(radius: f64) -> f64 {
+    if (0.2..5.0).contains(&(radius / USUAL_RADIUS)) { 1.0 } else { radius / USUAL_RADIUS }
+}
+
+fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
+    let size = proportion(radius);
+    let path = Curve::constant(Vec3::from(hand.tip));
+    let mount = Mount { roll: hand.roll, ..Mount::along(hand.direction.into()) };
+    let shaft = Shaft { radius: 2.5e-3 * size, length: 0.3 * size };
+    match kind {
+        InstrumentKind::Probe => Box::new(Probe { path, mount, shaft, ..Probe::default() }),
+        InstrumentKind::Grasper => Box::new(Grasper {
+            path,
+            mount,
+            radius: 0.012 * size,
+            jaws: Some(Jaws { length: 0.02 * size, radius: 1.5e-3 * size, ..Jaws::default() }),
+            shaft: Some(shaft),
+            ..Grasper::default()
+        }),
+        InstrumentKind::Cautery => {
+            let (radius, heat) = (5e-3 * size, HASTE * Cautery::default().heat);
+            let power = POWER * size.powi(3);
+            Box::new(Cautery { path, mount, radius, heat, power, shaft: Some(shaft), ..Cautery::default() })
+        }
+    }
+}
+
+pub(crate) fn shape(world: &AnyWorld, instrument: u32, tool: &Tool, radius: f64) -> InstrumentShape {
+    let (parts, reach, trocar) = with!(world, world => {
+        let this = world.instrument(id(instrument));
+        (world.tool_capsules(id(instrument)), this.reach(), this.mount().trocar)
+    });
+    let size = proportion(radius);
+    let rod = |part: &Capsule| Rod { radius: part.radius, length: (part.to - part.from).norm() };
+    let shaft = parts.first().map_or(Rod { radius: 2.5e-3 * size, length: 0.3 * size }, rod);
+    let jaw = parts.get(1).map_or(Rod { radius: 0.6 * shaft.radius, length: reach.max(8.0 * shaft.radius) }, rod);
+    InstrumentShape {
+        instrument,
+        kind: tool.kind.clone(),
+        name: tool.name.clone(),
+        scripted: tool.scripted,
+        shaft,
+        reach,
+        jaw: (tool.kind == InstrumentKind::Grasper.name()).then_some(Jaw {
+            length: jaw.length,
+            radius: jaw.radius,
+            widest: Jaws::default().opening,
+        }),
+        hook: (tool.kind == InstrumentKind::Cautery.name())
+            .then_some(Rod { radius: 0.4 * shaft.radius, length: 2.0 * reach }),
+        trocar: trocar.map(Vec3::to_array),
+    }
+}
+
+pub(crate) fn frame(world: &AnyWorld, instrument: u32, tool: &Tool) -> InstrumentFrame {
+    fn of<T: Scalar>(world: &World<T>, instrument: u32, tool: &Tool) -> InstrumentFrame {
+        let id = id(instrument);
+        let state = world.tool(id);
+        let parts = world.tool_capsules(id);
+        let numbers = |part: &Capsule| {
+            let ends = [part.from, part.to].map(|end| end.cast::<f32>().to_array());
+            ends.into_iter().flatten().chain([part.radius as f32])
+        };
+        InstrumentFrame {
+            instrument,
+            tip: state.pose.tip.to_array(),
+            direction: state.pose.direction.to_array(),
+            roll: state.pose.roll,
+            trigger: state.trigger,
+            opening: Jaws::default().opening * (1.0 - state.trigger),
+            active: world.is_at_work(id),
+            holds: state.held_nodes > 0,
+            force: (-state.force()).to_array(),
+            torque: (-state.torque()).to_array(),
+            parts: F32s(parts.iter().flat_map(numbers).collect()),
+            stamp: tool.stamp,
+        }
+    }
+    with!(world, world => of(world, instrument, tool))
+}
+
+/// How burnt these nodes are [0 … 1]; none where nothing is.
+pub(crate) fn seared(world: &AnyWorld, body: usize, nodes: &[u32]) -> Option<Vec<f32>> {
+    with!(world, world => {
+        let seared = world.body(BodyId(body)).seared();
+        let values: Vec<f32> = nodes.iter().map(|&node| seared[node as usize].to_f64() as f32).collect();
+        values.iter().any(|&value| value > 0.0).then_some(values)
+    })
+}

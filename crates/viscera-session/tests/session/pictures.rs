@@ -1,0 +1,85 @@
+use viscera_session::Seen;
+use viscera_session::message::{Answer, Command};
+
+use crate::support::{BAR, Page};
+
+/// Pictures that were left out are not missed: the next one has every surface and the scene, if they changed meanwhile.
+#[test]
+fn whoever_misses_pictures_is_brought_up_to_date_by_the_next() {
+    let mut page = Page::open(BAR);
+    let mut slow = Seen::default();
+    page.step(1);
+    page.session.handle(Command::Colour { by: "none".into() }.into());
+    let kinds = |parts: Vec<std::sync::Arc<[u8]>>| -> Vec<&'static str> {
+        let kind = |answer: Answer| match answer {
+            Answer::Scene(_) => "scene",
+            Answer::Surface(_) => "surface",
+            Answer::Frame(_) => "frame",
+            _ => "other",
+        };
+        parts.iter().map(|part| kind(Answer::decode(part).unwrap())).collect()
+    };
+    let picture = page.session.picture().unwrap();
+    assert_eq!(kinds(picture.parts_for(&mut slow)), ["scene", "surface", "frame"]);
+    assert!(picture.parts_for(&mut slow).is_empty(), "the same picture twice is nothing new");
+    page.step(1);
+    page.session.handle(Command::Reset {}.into());
+    let _left_out = page.session.picture().unwrap();
+    page.session.handle(Command::Step { count: 1 }.into());
+    while page.session.work() {}
+    let picture = page.session.picture().unwrap();
+    assert_eq!(kinds(picture.parts_for(&mut slow)), ["scene", "surface", "frame"]);
+    page.session.handle(Command::Step { count: 1 }.into());
+    while page.session.work() {}
+    assert_eq!(kinds(page.session.picture().unwrap().parts_for(&mut slow)), ["frame"]);
+    assert!(page.session.picture().is_none(), "nothing has changed since");
+}
+
+/// Each colouring has one number for each vertex, inside its scale.
+#[test]
+fn colours_lie_on_their_scale() {
+    let mut page = Page::open(BAR);
+    page.step(30);
+    for (by, unit) in [("displacement", "m"), ("von-mises", "Pa"), ("volume-change", ""), ("adaptive-mode", "")] {
+        page.say(Command::Colour { by: by.into() });
+        let frame = page.frame();
+        assert_eq!((frame.colouring.by.as_str(), frame.colouring.unit.as_str()), (by, unit));
+        let scalars = &frame.bodies[0].scalars.as_ref().unwrap().0;
+        assert_eq!(3 * scalars.len(), frame.bodies[0].positions.0.len());
+        let (low, high) = (frame.colouring.low as f32, frame.colouring.high as f32);
+        assert!(scalars.iter().all(|scalar| (low..=high).contains(scalar)), "{by}");
+        assert!(scalars.iter().any(|&scalar| scalar != 0.0), "{by} shows something on a bar that bends");
+    }
+    page.say(Command::Colour { by: "none".into() });
+    assert!(page.frame().bodies[0].scalars.is_none());
+    page.say(Command::Colour { by: "taste".into() });
+    assert!(page.refusals()[0].help.contains("von-mises"));
+}
+
+/// The displacement that is shown is that of the observables, and a table of them goes home.
+#[test]
+fn exports_hold_what_is_shown() {
+    let mut page = Page::open(BAR);
+    page.say(Command::Colour { by: "displacement".into() });
+    for _ in 0..5 {
+        page.step(5);
+    }
+    let shown = page.frame().bodies[0].scalars.as_ref().unwrap().0.iter().copied().fold(0.0, f32::max);
+    let observed = page.frame().observables.as_ref().unwrap()[0].largest_displacement;
+    assert!((f64::from(shown) / observed - 1.0).abs() < 1e-5, "{shown} {observed}");
+    page.say(Command::Export { what: viscera_session::message::Export::Observables });
+    let text = String::from_utf8(page.file()).unwrap();
+    let last: Vec<f64> = text.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect();
+    assert!(text.starts_with("time [s],bar: kinetic energy [J],"));
+    assert_eq!((last[0], last[5]), (page.frame().time, observed));
+    page.say(Command::Export { what: viscera_session::message::Export::State });
+    let grid = viscera_io::vtu::parse(&page.file()).unwrap();
+    let viscera_io::ImportedMesh::Tet(mesh) = grid.mesh else { panic!("a bar of tetrahedra") };
+    assert_eq!(mesh.cells.len(), 144);
+    page.set("body.bar.law.young", 7e3);
+    page.say(Command::Export { what: viscera_session::message::Export::Scene });
+    let text = String::from_utf8(page.file()).unwrap();
+    assert!(text.contains("young = 7000"), "{text}");
+    page.say(Command::OpenText { text, name: None });
+    assert_eq!(page.refusals(), [], "the scene that went home comes back");
+}

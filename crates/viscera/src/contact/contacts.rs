@@ -1,0 +1,242 @@
+use super::sweep::{MARGIN, first_touch};
+use super::{MovingCapsule, ToolFrame, Traction};
+use crate::math::{Scalar, Vec3};
+use crate::mesh::Point;
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// A point of a body's surface that touches a tool, or will within the step.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact {
+    /// Corners that have a part in the point, ascending; others are `u32::MAX`. With the rod it names the contact: triangles share
+    /// edges and corners.
+    feature: [u32; 3],
+    /// Number of the rod.
+    pub(super) rod: u32,
+    pub(super) nodes: [u32; 3],
+    /// Barycentric weights of the point.
+    pub(super) weights: [f64; 3],
+    /// From the rod to the tissue.
+    pub(super) normal: Point,
+    /// Distance of the two surfaces at the beginning of the step, along the normal [m].
+    pub(super) gap: f64,
+    /// How far the rod's point goes in the step [m].
+    pub(super) way: Point,
+    /// Where the tool's surface touches at the end of the step, from the tip [m].
+    lever: Point,
+    pub(super) friction: f64,
+    /// Velocity along and across the normal that a unit of impulse makes [1/kg].
+    pub(super) mobility: [f64; 2],
+    /// Impulse on the tissue, along and across the normal, or the like as force.
+    pub(super) push: f64,
+    pub(super) drag: Point,
+    /// Stiffness of the spring that stands for the contact in an implicit step [N/m]; 0 until it is known.
+    pub(super) stiffness: f64,
+    pub(super) is_active: bool,
+    pub(super) sticks: bool,
+    /// Friction at the beginning of an implicit step [N].
+    pub(super) before: Point,
+}
+
+/// What a tool did to a body in a step: impulses on the tissue [N s], and their moments about the tip [N m s].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToolLoad {
+    /// By contact.
+    pub(crate) contact: Point,
+    pub(crate) contact_moment: Point,
+    /// By the jaws, on what they hold.
+    pub(crate) holding: Point,
+    pub(crate) holding_moment: Point,
+    /// Points that touched last.
+    pub(crate) points: u32,
+}
+
+/// All contacts of a body with tools, and memory to find them in.
+#[derive(Clone, Debug, Default)]
+pub struct Contacts {
+    pub(super) list: Vec<Contact>,
+    /// Triangles that a tool may reach in the step.
+    candidates: Vec<u32>,
+    /// How far a node may go before the candidates mean nothing [m].
+    reach: f64,
+    /// What the tools did in the step, one for each tool.
+    pub(crate) loads: Vec<ToolLoad>,
+}
+
+impl Contacts {
+    /// Asks for memory: for as many tools, for a surface of so many triangles, and of so many `at_most` when it is cut. No more
+    /// contacts than the surface has triangles are known at a time.
+    pub(crate) fn reserve(&mut self, tools: usize, triangles: usize, at_most: usize) {
+        self.loads.resize(tools.max(self.loads.len()), ToolLoad::default());
+        self.list.reserve(triangles.saturating_sub(self.list.len()));
+        self.candidates.reserve(at_most.saturating_sub(self.candidates.len()));
+    }
+
+    /// Whether nothing touches.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// Forgets what touches and what might: no node goes too far then.
+    pub(crate) fn forget(&mut self) {
+        self.list.clear();
+        self.candidates.clear();
+        self.reach = f64::INFINITY;
+    }
+
+    pub(crate) fn clear_loads(&mut self) {
+        self.loads.fill(ToolLoad::default());
+    }
+
+    /// How far a node may go in the step [m].
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Lists the triangles that the rods may meet while no node goes farther than `reach` [m]; gives whether there are any.
+    pub(crate) fn gather<T: Scalar>(
+        &mut self,
+        rods: &[MovingCapsule],
+        skin: &[[u32; 3]],
+        positions: &[Vec3<T>],
+        reach: f64,
+    ) -> bool {
+        self.reach = reach;
+        self.candidates.clear();
+        let Some((low, high)) = bounds(rods) else { return false };
+        let margin = Point::splat(reach);
+        let (low, high): (Vec3<T>, Vec3<T>) = ((low - margin).cast(), (high + margin).cast());
+        for (triangle, nodes) in skin.iter().enumerate() {
+            let [a, b, c] = nodes.map(|node| positions[node as usize]);
+            let (from, to) = (a.min(b).min(c), a.max(b).max(c));
+            if (0..3).all(|axis| from[axis] <= high[axis] && low[axis] <= to[axis]) {
+                self.candidates.push(triangle as u32);
+            }
+        }
+        !self.candidates.is_empty()
+    }
+
+    /// Takes in all contacts between candidates and rods that are not known yet; gives whether there are any. `places` gives a node's
+    /// place at the beginning and at the end of the step.
+    pub(crate) fn find(
+        &mut self,
+        rods: &[MovingCapsule],
+        skin: &[[u32; 3]],
+        frames: &[ToolFrame],
+        places: impl Fn(u32) -> (Point, Point),
+    ) -> bool {
+        let known = self.list.len();
+        for &candidate in &self.candidates {
+            let nodes = skin[candidate as usize];
+            let moves = nodes.map(&places);
+            let (start, end) = (moves.map(|(start, _)| start), moves.map(|(_, end)| end));
+            let low = start.iter().chain(&end).fold(Point::splat(f64::INFINITY), |low, &place| low.min(place));
+            let high = start.iter().chain(&end).fold(Point::splat(f64::NEG_INFINITY), |high, &place| high.max(place));
+            for (number, rod) in rods.iter().enumerate() {
+                let (from, to) = rod.bounds();
+                let margin = MARGIN * rod.start.radius;
+                if (0..3).any(|axis| low[axis] > to[axis] + margin || from[axis] > high[axis] + margin)
+                    || self.list.len() == self.list.capacity()
+                {
+                    continue;
+                }
+                let Some(touch) = first_touch(&start, &end, rod) else { continue };
+                let feature = feature(nodes, touch.weights);
+                if self.list[..known].iter().any(|old| old.feature == feature && old.rod == number as u32) {
+                    continue;
+                }
+                let place: Point = (0..3).fold(Point::ZERO, |sum, i| sum + start[i] * touch.weights[i]);
+                let (axis, axis_at_end) = rod.axis(touch.along);
+                self.list.push(Contact {
+                    feature,
+                    rod: number as u32,
+                    nodes,
+                    weights: touch.weights,
+                    normal: touch.normal,
+                    gap: touch.normal.dot(place - axis) - rod.start.radius,
+                    way: axis_at_end - axis,
+                    lever: axis_at_end + touch.normal * rod.start.radius - frames[rod.tool as usize].tip.1,
+                    friction: rod.friction,
+                    mobility: [0.0; 2],
+                    push: 0.0,
+                    drag: Point::ZERO,
+                    stiffness: 0.0,
+                    is_active: false,
+                    sticks: true,
+                    before: Point::ZERO,
+                });
+            }
+        }
+        if self.list.len() == known {
+            return false;
+        }
+        // Triangles meet at corners and edges: one contact for each. Equal ones in the order of their triangles.
+        let new = &mut self.list[known..];
+        new.sort_unstable_by(|a, b| {
+            let key = |contact: &Contact| (contact.rod, contact.feature, contact.nodes);
+            key(a).cmp(&key(b))
+        });
+        self.list.dedup_by_key(|contact| (contact.rod, contact.feature));
+        true
+    }
+
+    /// Adds what the contacts do in `duration` [s], with impulses or forces as they are now, to the tools' loads.
+    pub(super) fn account(&mut self, rods: &[MovingCapsule], duration: f64) {
+        self.loads.iter_mut().for_each(|load| load.points = 0);
+        for contact in &self.list {
+            let impulse = (contact.normal * contact.push + contact.drag) * duration;
+            let load = &mut self.loads[rods[contact.rod as usize].tool as usize];
+            load.contact += impulse;
+            load.contact_moment += contact.lever.cross(impulse);
+            load.points += u32::from(contact.push > 0.0);
+        }
+    }
+
+    /// Friction that the next implicit step begins with.
+    pub(crate) fn find_before(&mut self, tractions: &[Traction], rods: &[MovingCapsule]) {
+        for contact in &mut self.list {
+            let rod = rods[contact.rod as usize];
+            let known = tractions.iter().find(|old| old.is_of(contact.feature, rod.tool, rod.part));
+            contact.before = known.map_or(Point::ZERO, |old| {
+                let force = old.force();
+                force - contact.normal * contact.normal.dot(force)
+            });
+        }
+    }
+
+    /// Keeps the friction of this step for the next one.
+    pub(crate) fn keep_tractions(&self, tractions: &mut Vec<Traction>, rods: &[MovingCapsule]) {
+        tractions.clear();
+        let touching = self.list.iter().filter(|contact| contact.push > 0.0);
+        tractions.extend(touching.take(tractions.capacity()).map(|contact| {
+            let rod = rods[contact.rod as usize];
+            Traction::new(contact.feature, rod.tool, rod.part, contact.drag)
+        }));
+    }
+}
+
+/// The box of all that rods sweep; none without rods.
+fn bounds(rods: &[MovingCapsule]) -> Option<(Point, Point)> {
+    let boxes = rods.iter().map(|rod| {
+        let ((low, high), margin) = (rod.bounds(), Point::splat(MARGIN * rod.start.radius));
+        (low - margin, high + margin)
+    });
+    boxes.reduce(|(low, high), (from, to)| (low.min(from), high.max(to)))
+}
+
+/// The corners that have a part in a point.
+fn feature(nodes: [u32; 3], weights: [f64; 3]) -> [u32; 3] {
+    let mut feature = [NONE; 3];
+    for i in 0..3 {
+        if weights[i] > 0.0 {
+            feature[i] = nodes[i];
+        }
+    }
+    feature.sort_unstable();
+    feature
+}

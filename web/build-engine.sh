@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Builds the engine as WebAssembly into web/src/engine/generated, for a page that needs no server.
+# Takes rustup's target where it can be had, or else Debian's compiler for the web, where that is new enough; says what is missing otherwise.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+out=web/src/engine/generated
+target_dir="${CARGO_TARGET_DIR:-$PWD/target}"
+version="$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p}' Cargo.lock)"
+
+missing() {
+    printf 'the engine cannot be built for the web: %s\n' "$1" >&2
+    exit 1
+}
+
+has_target() {
+    [ -d "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown/lib" ]
+}
+
+# Without relaxed operations: they are not in every browser, and round otherwise on each.
+flags="-C target-feature=+simd128"
+
+if has_target || { command -v rustup >/dev/null && rustup target add wasm32-unknown-unknown >/dev/null 2>&1 && has_target; }; then
+    RUSTFLAGS="$flags" cargo build --locked --profile web --target wasm32-unknown-unknown -p viscera-web
+elif [ -x "${WEB_RUSTC:-/usr/bin/rustc}" ] && [ -x "${WEB_CARGO:-/usr/bin/cargo}" ] && [ -n "${WEB_RUST_SRC:-}" ]; then
+    # A compiler with the library's sources beside it: the library is built along.
+    RUSTC="${WEB_RUSTC:-/usr/bin/rustc}" RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" \
+        RUSTFLAGS="$flags -C linker=${WEB_LINKER:-wasm-ld}" "${WEB_CARGO:-/usr/bin/cargo}" build --locked --profile web \
+        --target wasm32-unknown-unknown -Zbuild-std=std,panic_abort -p viscera-web
+else
+    missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`. Without rustup, \
+name a compiler of at least $(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml) by WEB_RUSTC and WEB_CARGO, and its library's sources by WEB_RUST_SRC"
+fi
+
+# The tool has to be of the library's version to the last digit.
+bindgen="$target_dir/tools/wasm-bindgen-$version"
+if [ ! -x "$bindgen/bin/wasm-bindgen" ]; then
+    RUSTFLAGS="" CARGO_TARGET_DIR="$target_dir/tools" cargo install wasm-bindgen-cli --version "=$version" --root "$bindgen"
+fi
+rm -rf "$out"
+"$bindgen/bin/wasm-bindgen" --target web --out-dir "$out" "$target_dir/wasm32-unknown-unknown/web/viscera_web.wasm"
+
+# A fifth smaller, where binaryen is there (npm, a development dependency of the page).
+if [ -x web/node_modules/.bin/wasm-opt ]; then
+    web/node_modules/.bin/wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int --enable-sign-ext \
+        --enable-mutable-globals --enable-reference-types --enable-multivalue \
+        "$out/viscera_web_bg.wasm" -o "$out/viscera_web_bg.wasm.small"
+    mv "$out/viscera_web_bg.wasm.small" "$out/viscera_web_bg.wasm"
+fi
+printf 'the engine is in %s: %s bytes, %s compressed\n' "$out" "$(wc -c <"$out/viscera_web_bg.wasm")" "$(gzip -9c "$out/viscera_web_bg.wasm" | wc -c)"
