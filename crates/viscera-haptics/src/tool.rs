@@ -73,8 +73,10 @@ impl Tool {
         self
     }
 
-    /// Where the instrument is led to for a hand at this pose: the rest of the way falls with exp(−t/τ).
+    /// Where the instrument is led to for a hand at this pose: the rest of the way falls with exp(−t/τ). It comes to the hand open: closed
+    /// jaws would take hold of what lies where it comes from.
     fn lead(&mut self, pose: &Pose) -> Pose {
+        let trigger = if self.led.is_some() { pose.trigger } else { 0.0 };
         let position = match self.led {
             Some((time, from)) if self.follows > 0.0 => {
                 let share = 1.0 - (-(pose.time - time) / self.follows).exp();
@@ -83,7 +85,7 @@ impl Tool {
             _ => pose.position,
         };
         self.led = Some((pose.time, position));
-        Pose { position, ..*pose }
+        Pose { position, trigger, ..*pose }
     }
 
     /// Leads the instrument to the pose within one step of the world, and says what the tissue answers.

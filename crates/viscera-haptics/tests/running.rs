@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use viscera_haptics::{
-    Channel, ChannelSettings, Contact, Device, DeviceError, EmulatedDevice, End, Extrapolation, Hand, HapticThread,
+    Channel, ChannelSettings, Contact, Device, DeviceError, EmulatedDevice, End, Hand, HapticThread,
     Imperfections, ManualClock, Pose, Priority, Rating, Reading, Run, Sample, Statistics, Vector, run,
 };
 
@@ -22,7 +22,7 @@ fn to_and_fro(time: f64) -> Vector {
     Vector::new(0.01 * (6.0 * time).sin(), 0.0, 0.002)
 }
 
-/// Runs so many periods; gives what the device felt besides.
+/// Runs so many periods; gives what the device was asked for besides.
 fn run_for(
     device: &mut EmulatedDevice,
     settings: ChannelSettings,
@@ -136,10 +136,15 @@ fn latency_delays_readings_and_forces_alike() {
     let imperfections = Imperfections { latency: 0.02, ..Imperfections::default() };
     let ramp = |time: f64| Vector::new(0.02 * time, 0.0, 0.0);
     let mut device = EmulatedDevice::imperfect(Rating::TOUCH, Hand::on_rails(ramp), imperfections);
-    let settings = ChannelSettings { extrapolation: Extrapolation::Direct, ..ChannelSettings::default() };
-    run_for(&mut device, settings, &mut ManualClock::default(), 1001);
-    // At 1 s: −50 N/m · 20 mm/s · 0.96 s, in steps of a millisecond.
-    assert!((device.felt().x + 50.0 * 0.02 * 0.96).abs() < 50.0 * 0.02 * 1.1e-3, "{}", device.felt().x);
+    for tick in 0..=800 {
+        let time = f64::from(tick) * 1e-3;
+        let seen = device.read(time).unwrap().position;
+        device.command(seen * -50.0).unwrap();
+        let (saw, felt) = ((time - 0.02).max(0.0), (time - 0.04).max(0.0));
+        assert!((seen - ramp(saw)).norm() < 1e-12, "{seen:?} at {time} s");
+        // Forces are steps of a millisecond.
+        assert!((device.felt().x + 50.0 * 0.02 * felt).abs() <= 50.0 * 0.02 * 1e-3 + 1e-12, "{:?} at {time} s", device.felt());
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The channel on tissue: a block that a hand pulls and presses.
 
 use viscera::body::Body;
-use viscera::dynamics::implicit::Implicit;
+use viscera::dynamics::implicit::{Implicit, Scheme};
 use viscera::instrument::Grasper;
 use viscera::material::{LinearElastic, Tissue};
 use viscera::mesh::{Region, TetMesh};
@@ -24,14 +24,14 @@ fn bar(integrator: Integrator, step: f64) -> (World<f64>, InstrumentId) {
         .damping(20.0)
         .fix(Region::plane([0.0; 3], [0.0, 0.0, 1.0], 1e-9));
     world.add(body).unwrap();
-    // Half the diagonal of the end is 42 mm; the next layer lies 30 mm below, and 42 mm around its centre are its corners.
-    let grasper = Grasper { radius: 0.0428, ..Grasper::default() };
+    // 30 mm above the end, its corners are 52 mm away, and the next layer of nodes 60 mm.
+    let grasper = Grasper { radius: 0.055, ..Grasper::default() };
     let id = world.add_instrument(grasper).unwrap();
     (world, id)
 }
 
 fn top(offset: Vector) -> Vector {
-    Vector::new(0.5 * SIDE, 0.5 * SIDE, HEIGHT + 0.01) + offset
+    Vector::new(0.5 * SIDE, 0.5 * SIDE, HEIGHT + 0.03) + offset
 }
 
 fn pose(time: f64, offset: Vector) -> Pose {
@@ -39,29 +39,28 @@ fn pose(time: f64, offset: Vector) -> Pose {
     Pose { time, position: top(offset), orientation, velocity: Vector::ZERO, trigger: 1.0 }
 }
 
-/// An implicit step so long that the tissue comes to rest in it: the stiffness is that of a bar, E A/l along its axis.
+/// Implicit steps so long that the tissue comes to rest in each: the stiffness is that of a bar, E A/l along its axis.
 #[test]
 fn probing_finds_the_stiffness_of_a_bar_and_leaves_no_trace() {
     let go = |probing: bool| {
-        let (mut world, id) = bar(Integrator::Implicit(Implicit::accurate(Default::default())), 10.0);
+        let (mut world, id) = bar(Integrator::Implicit(Implicit::accurate(Scheme::BackwardEuler)), 1e4);
         let tool = Tool::new(id);
         let mut tool = if probing { tool.probing(1e-4, 1) } else { tool };
-        let samples: Vec<_> = (0..3)
-            .map(|number| {
-                let time = f64::from(number);
-                tool.step(&mut world, &pose(time, Vector::new(0.0, 0.0, 1e-3 * time))).unwrap()
-            })
+        // It comes open, takes hold, and is pulled by 2 mm.
+        let pulled = [0.0, 0.0, 1e-3, 2e-3].into_iter().enumerate();
+        let samples: Vec<_> = pulled
+            .map(|(number, up)| tool.step(&mut world, &pose(number as f64, Vector::new(0.0, 0.0, up))).unwrap())
             .collect();
         (samples, world.snapshot().to_bytes())
     };
     let (samples, probed) = go(true);
-    let stiffness = samples[2].stiffness.unwrap();
+    let stiffness = samples[3].stiffness.unwrap();
     let expected = YOUNG * SIDE * SIDE / HEIGHT;
     assert!((stiffness.columns[2].z / expected - 1.0).abs() < 1e-3, "{} N/m, not {expected}", stiffness.columns[2].z);
     // Reciprocity: a linear body's stiffness is symmetric.
     let skew = stiffness - stiffness.transpose();
     assert!(skew.squared_norm().sqrt() < 1e-3 * expected, "{stiffness:?}");
-    assert!((samples[2].force.z + expected * 2e-3).abs() < 1e-3 * expected * 2e-3, "{:?}", samples[2].force);
+    assert!((samples[3].force.z + expected * 2e-3).abs() < 1e-3 * expected * 2e-3, "{:?}", samples[3].force);
     assert_eq!(probed, go(false).1, "the world went on as if nobody had asked");
 }
 
@@ -71,7 +70,7 @@ fn a_hand_feels_the_bar_that_it_presses() {
     let (mut world, id) = bar(Integrator::Explicit(Substep::Automatic), 1e-3);
     let mut tool = Tool::new(id);
     let depth = 4e-3;
-    let way = move |time: f64| top(Vector::new(0.0, 0.0, -depth * (time / 0.5).min(1.0)));
+    let way = move |time: f64| top(Vector::new(0.0, 0.0, -depth * ((time - 0.1) / 0.5).clamp(0.0, 1.0)));
     let mut device = EmulatedDevice::new(Rating::TOUCH, Hand::on_rails(way)).trigger(1.0);
     let settings = ChannelSettings { extrapolation: Extrapolation::Direct, ..ChannelSettings::default() };
     let mut channel = Channel::new(settings, device.rating()).unwrap();

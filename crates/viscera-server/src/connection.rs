@@ -153,7 +153,7 @@ impl Guest {
                 .refuse("", request, "another page controls the simulation; this one watches until that leaves")
                 .await;
         }
-        self.stage.commands.send(bytes.into()).await.map_err(|_| Gone)
+        if self.stage.send(bytes.into()).await { Ok(()) } else { Err(Gone) }
     }
 
     async fn refuse(&mut self, command: &str, request: Option<u64>, reason: &str) -> Result<(), Gone> {

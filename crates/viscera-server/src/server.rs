@@ -76,7 +76,7 @@ impl Server {
         let listener = runtime.block_on(TcpListener::bind(wanted)).map_err(bind)?;
         let address = listener.local_addr().map_err(bind)?;
         let room = Room::new();
-        let stage = Stage::start(session, room.clone(), runtime.handle().clone()).map_err(ServeError::Threads)?;
+        let stage = Stage::start(session, room.clone()).map_err(ServeError::Threads)?;
         let guard = Guard { allowed: settings.allowed_hosts };
         let house = House { stage, room, number: number_of_this_run() };
         let app = Router::new()

@@ -1,12 +1,11 @@
 //! The thread on which the session lives.
 
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-use tokio::runtime::Handle;
-use tokio::sync::{broadcast, mpsc, watch};
-use tokio::time::timeout;
-use viscera_session::message::{Answer, Notice};
+use tokio::sync::{broadcast, watch};
+use viscera_session::message::Answer;
 use viscera_session::{Picture, Session};
 
 use crate::room::Room;
@@ -17,6 +16,8 @@ const FRAME: Duration = Duration::from_micros(16_667);
 const IDLE: Duration = Duration::from_millis(100);
 /// Commands that wait for the thread; whoever sends more waits too.
 const WAITING: usize = 64;
+/// How soon a command that found no room is offered again.
+const AGAIN: Duration = Duration::from_millis(2);
 /// Answers that wait for a slow connection; what is older is lost to it.
 const ANSWERS: usize = 256;
 
@@ -37,7 +38,7 @@ pub(crate) struct Outgoing {
 /// The ways to the thread and back.
 #[derive(Clone)]
 pub(crate) struct Stage {
-    pub(crate) commands: mpsc::Sender<Vec<u8>>,
+    commands: SyncSender<Vec<u8>>,
     pub(crate) pictures: watch::Receiver<Option<Picture>>,
     pub(crate) answers: broadcast::Sender<Outgoing>,
     pub(crate) catalogue: Arc<[u8]>,
@@ -46,24 +47,36 @@ pub(crate) struct Stage {
 
 impl Stage {
     /// Starts the thread. It ends when nobody can send commands any more.
-    pub(crate) fn start(session: Session, room: Room, handle: Handle) -> std::io::Result<Self> {
-        let (commands, received) = mpsc::channel(WAITING);
+    pub(crate) fn start(session: Session, room: Room) -> std::io::Result<Self> {
+        let (commands, received) = sync_channel(WAITING);
         let (show, pictures) = watch::channel(None);
         let answers = broadcast::Sender::new(ANSWERS);
         let (catalogue, threads) = (session.catalogue(), session.threads());
-        let player = Player { session, received, show, answers: answers.clone(), room, handle };
+        let player = Player { session, received, show, answers: answers.clone(), room };
         std::thread::Builder::new().name("simulation".into()).spawn(move || player.run())?;
         Ok(Self { commands, pictures, answers, catalogue, threads })
+    }
+
+    /// Hands a command to the thread, when it has room for one; gives whether the thread is still there.
+    pub(crate) async fn send(&self, mut command: Vec<u8>) -> bool {
+        loop {
+            match self.commands.try_send(command) {
+                Ok(()) => return true,
+                Err(TrySendError::Disconnected(_)) => return false,
+                Err(TrySendError::Full(back)) => command = back,
+            }
+            // The thread takes all that wait between two steps.
+            tokio::time::sleep(AGAIN).await;
+        }
     }
 }
 
 struct Player {
     session: Session,
-    received: mpsc::Receiver<Vec<u8>>,
+    received: Receiver<Vec<u8>>,
     show: watch::Sender<Option<Picture>>,
     answers: broadcast::Sender<Outgoing>,
     room: Room,
-    handle: Handle,
 }
 
 impl Player {
@@ -109,11 +122,10 @@ impl Player {
             Some(due) => until_picture.min(Duration::from_secs_f64(due.min(1.0))),
             None => until_picture.max(Duration::from_millis(1)),
         };
-        // The timer is made inside, where there is a runtime to make it with.
-        match self.handle.block_on(async { timeout(pause, self.received.recv()).await }) {
-            Ok(None) => return false,
-            Ok(Some(command)) => self.session.receive(&command),
-            Err(_) => {}
+        match self.received.recv_timeout(pause) {
+            Err(RecvTimeoutError::Disconnected) => return false,
+            Ok(command) => self.session.receive(&command),
+            Err(RecvTimeoutError::Timeout) => {}
         }
         self.take_waiting_commands();
         true
@@ -123,7 +135,6 @@ impl Player {
         for answer in self.session.take_answers() {
             let audience = match &answer {
                 Answer::Refusal(_) | Answer::File(_) => Audience::Controller,
-                Answer::Notice(Notice { .. }) => Audience::Everybody,
                 _ => Audience::Everybody,
             };
             // Nobody may be listening.

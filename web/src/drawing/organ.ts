@@ -27,6 +27,8 @@ export class Organ {
     this.skin = skin;
     this.look = tissueLook(size, coat, skin);
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.look.material);
+    // Drawn before it has normals, the material would be made for flat faces and stay so.
+    this.mesh.visible = false;
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
     // The bounds change with every frame, and the organ is what one looks at.
@@ -54,6 +56,7 @@ export class Organ {
     geometry.setIndex(new THREE.BufferAttribute(drawn.triangles, 1));
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
+    this.mesh.visible = true;
     this.drawn = drawn;
     this.epoch = surface.epoch;
     this.renewNormals();

@@ -9,15 +9,17 @@ export interface Quality {
   readonly shadow: boolean;
   /** The physical material with grain and wet coat, and not the plain one. */
   readonly coat: boolean;
+  /** Milliseconds from one picture to the next at least: where drawing takes all there is, the rest of the page needs some. */
+  readonly pause: number;
   /** The room shines in tissue and steel, and not the lamps alone. */
   readonly reflections: boolean;
 }
 
 export const LEVELS: readonly Quality[] = [
-  { name: 'least', pixelRatio: 0.6, shadow: false, coat: false, reflections: false },
-  { name: 'low', pixelRatio: 0.8, shadow: false, coat: false, reflections: true },
-  { name: 'medium', pixelRatio: 1, shadow: true, coat: true, reflections: true },
-  { name: 'full', pixelRatio: 2, shadow: true, coat: true, reflections: true },
+  { name: 'least', pixelRatio: 0.6, shadow: false, coat: false, reflections: false, pause: 100 },
+  { name: 'low', pixelRatio: 0.8, shadow: false, coat: false, reflections: true, pause: 0 },
+  { name: 'medium', pixelRatio: 1, shadow: true, coat: true, reflections: true, pause: 0 },
+  { name: 'full', pixelRatio: 2, shadow: true, coat: true, reflections: true, pause: 0 },
 ];
 
 /** Where to begin: as `wanted` says, else low for a machine without graphics of its own, else at the top. */

@@ -219,6 +219,7 @@ export class View {
       this.lastDrawn = 0;
       return;
     }
+    if (now - latest < this.quality.quality.pause && this.drawn > 0) return;
     this.changed = false;
     this.draw();
     this.drawn += 1;

@@ -144,35 +144,44 @@ fn coarse_liver(page: &mut Page) {
     page.say(Command::StartRecording {});
 }
 
+/// The vertex that is farthest along an axis [m]: what the user aims at.
+fn farthest(page: &Page, axis: usize) -> [f64; 3] {
+    let places = page.positions(0);
+    let vertex = places.chunks_exact(3).max_by(|a, b| a[axis].total_cmp(&b[axis])).unwrap();
+    [0, 1, 2].map(|axis| f64::from(vertex[axis]))
+}
+
 /// Takes the edge of the left lobe, lifts it, and lets go.
 fn grasp_and_lift(page: &mut Page) {
     coarse_liver(page);
-    let tip = [0.13, 0.03, 0.01];
-    let grasper = page.add("grasper", [tip[0], tip[1] + 0.08, tip[2]], [0.0, -1.0, 0.0]);
-    for step in 0..=20 {
-        page.lead(grasper, [tip[0], tip[1] + 0.08 - 0.004 * f64::from(step), tip[2]], 0.0);
+    let [x, y, z] = farthest(page, 0);
+    let grasper = page.add("grasper", [x, y + 0.06, z], [0.0, -1.0, 0.0]);
+    for step in 0..=19 {
+        page.lead(grasper, [x, y + 0.06 - 0.003 * f64::from(step), z], 0.0);
         page.step(1);
     }
     for step in 0..=60 {
-        page.lead(grasper, [tip[0], tip[1] + 0.001 * f64::from(step), tip[2]], 1.0);
+        page.lead(grasper, [x, y + 0.003 + 0.001 * f64::from(step), z], 1.0);
         page.step(1);
     }
     assert!(page.frame().instruments[0].holds, "the jaws hold the lobe");
-    page.lead(grasper, [tip[0], tip[1] + 0.06, tip[2]], 0.0);
+    page.lead(grasper, [x, y + 0.06, z], 0.0);
     page.step(38);
 }
 
 /// Presses a probe into the organ from above while its tissue softens.
 fn press_and_soften(page: &mut Page) {
     coarse_liver(page);
-    let probe = page.add("probe", [0.02, 0.14, 0.0], [0.0, -1.0, 0.0]);
+    let [x, y, z] = farthest(page, 1);
+    let probe = page.add("probe", [x, y + 0.03, z], [0.0, -1.0, 0.0]);
+    let mut pressed: f64 = 0.0;
     for step in 0..120 {
-        page.lead(probe, [0.02, 0.14 - 0.0008 * f64::from(step), 0.0], 0.0);
-        if step == 60 {
+        page.lead(probe, [x, y + 0.03 - 0.0005 * f64::from(step), z], 0.0);
+        if step == 80 {
             page.set("body.liver.law.young", 3e3);
         }
         page.step(1);
+        pressed = pressed.max(page.frame().instruments[0].force[1]);
     }
-    let force = page.frame().instruments[0].force;
-    assert!(force[1] > 0.0, "the tissue presses back: {force:?}");
+    assert!(pressed > 0.05, "the tissue presses back: {pressed} N");
 }

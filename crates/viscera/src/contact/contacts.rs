@@ -36,6 +36,8 @@ pub struct Contact {
     pub(super) is_active: bool,
     /// Share of the friction of sticking that the cone lets through.
     pub(super) grip: f64,
+    /// Friction when that was last decided [N].
+    pub(super) tried: f64,
     /// Friction at the beginning of an implicit step [N].
     pub(super) before: Point,
 }
@@ -169,6 +171,7 @@ impl Contacts {
                     stiffness: 0.0,
                     is_active: false,
                     grip: 1.0,
+                    tried: 0.0,
                     before: Point::ZERO,
                 });
             }
@@ -198,15 +201,18 @@ impl Contacts {
         }
     }
 
-    /// Friction that the next implicit step begins with.
+    /// Friction that an implicit step begins with, of contacts that were there in the one before.
     pub(crate) fn find_before(&mut self, tractions: &[Traction], rods: &[MovingCapsule]) {
         for contact in &mut self.list {
             let rod = rods[contact.rod as usize];
             let known = tractions.iter().find(|old| old.is_of(contact.feature, rod.tool, rod.part));
-            contact.before = known.map_or(Point::ZERO, |old| {
+            if let Some(old) = known {
                 let force = old.force();
-                force - contact.normal * contact.normal.dot(force)
-            });
+                contact.before = force - contact.normal * contact.normal.dot(force);
+                if contact.stiffness == 0.0 {
+                    contact.grip = old.grip();
+                }
+            }
         }
     }
 
@@ -216,7 +222,7 @@ impl Contacts {
         let touching = self.list.iter().filter(|contact| contact.push > 0.0);
         tractions.extend(touching.take(tractions.capacity()).map(|contact| {
             let rod = rods[contact.rod as usize];
-            Traction::new(contact.feature, rod.tool, rod.part, contact.drag)
+            Traction::new(contact.feature, (rod.tool, rod.part), contact.drag, contact.grip)
         }));
     }
 }

@@ -22,6 +22,11 @@ const STIFFER: f64 = 20.0;
 /// Friction is found anew while it is off by more than this share of its limit.
 const SETTLED: f64 = 2e-2;
 
+/// Share of the force before which a contact that was made softer still takes up when it holds.
+const HOLDS: f64 = 0.8;
+/// Power by which such a contact is made softer faster.
+const FASTER: i32 = 4;
+
 /// Friction of a contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Traction {
@@ -30,11 +35,13 @@ pub struct Traction {
     part: u32,
     /// On the tissue [N].
     force: Vec3<f64>,
+    /// Share of the friction of sticking that the cone let through.
+    grip: f64,
 }
 
 impl Traction {
-    pub(super) fn new(feature: [u32; 3], tool: u32, part: u32, force: Vec3<f64>) -> Self {
-        Self { feature, tool, part, force }
+    pub(super) fn new(feature: [u32; 3], (tool, part): (u32, u32), force: Vec3<f64>, grip: f64) -> Self {
+        Self { feature, tool, part, force, grip }
     }
 
     pub(super) fn is_of(&self, feature: [u32; 3], tool: u32, part: u32) -> bool {
@@ -43,6 +50,10 @@ impl Traction {
 
     pub(super) fn force(&self) -> Vec3<f64> {
         self.force
+    }
+
+    pub(super) fn grip(&self) -> f64 {
+        self.grip
     }
 }
 
@@ -90,7 +101,13 @@ impl Contacts {
             contact.set_force(slide);
             if is_active && contact.stiffness > 0.0 && contact.friction > 0.0 {
                 let (size, most) = (contact.friction_of_sticking(slide).norm(), contact.friction * contact.push);
-                let grip = if size <= most { 1.0 } else { most / size };
+                let force = contact.grip * size;
+                // A softer spring that takes up as much as before still holds what ought to slip: on a slope little steeper than the cone
+                // one secant after the other would take a dozen solves to let it go.
+                let holds = contact.grip < 1.0 && force > HOLDS * contact.tried && force > most;
+                let grip =
+                    if size <= most { 1.0 } else { contact.grip * (most / force).powi(if holds { FASTER } else { 1 }) };
+                contact.tried = force;
                 news |= (grip - contact.grip).abs() * size > SETTLED * most;
                 contact.grip = grip;
                 contact.set_force(slide);

@@ -134,6 +134,8 @@ fn ties_impulse<T: Scalar>(
     aim: Aim,
 ) -> Point {
     let (mut sum, mut first) = (Point::ZERO, 0.0f64);
+    // The second kick has been divided by this, and would have divided the impulse in it as well.
+    let damping = if aim == Aim::Velocity { 1.0 + 0.5 * dt * own.damping.to_f64() } else { 1.0 };
     for sweep in 0..SWEEPS {
         let mut largest = 0.0f64;
         for tie in ties {
@@ -164,7 +166,7 @@ fn ties_impulse<T: Scalar>(
             for (&anchor, weight) in tie.anchors.iter().zip(tie.weights) {
                 push(other, anchor as usize, -(impulse * weight), moved);
             }
-            sum += impulse;
+            sum += impulse * damping;
             largest = largest.max(impulse.norm() * mobility);
         }
         if sweep == 0 {

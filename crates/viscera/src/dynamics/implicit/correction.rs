@@ -3,11 +3,12 @@
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
+use crate::body::NodeMotion;
 use crate::contact::Contacts;
 use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockJacobi, BlockMatrix, Ending, Filter, Multigrid, Problem};
+use crate::solver::{BlockJacobi, BlockMatrix, Ending, Filter, LinearOperator, Multigrid, Problem};
 use crate::stage::Stage;
 
 /// How many roundings of the positions, through the stiffness of each node, count as no residual at all.
@@ -109,6 +110,12 @@ impl<T: Scalar> Step<'_, T> {
             }
             None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
         });
+        if !self.drive.frames.is_empty() && state.motions.iter().any(|motion| matches!(motion, NodeMotion::Held(_))) {
+            tangent.apply(&memory.correction, &mut memory.reactions);
+            for (reaction, &rhs) in memory.reactions.iter_mut().zip(&memory.rhs) {
+                *reaction = (*reaction - rhs) * stiffness;
+            }
+        }
         Solve {
             iterations: report.iterations,
             residual: report.residual,

@@ -35,6 +35,10 @@ pub struct ImplicitMemory<T> {
     pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) matrix: Option<BlockMatrix<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
+    /// What the linear equations of nodes that jaws hold lack to balance [N].
+    pub(super) reactions: Vec<Vec3<T>>,
+    /// Whether the step was solved by these equations.
+    pub(super) is_linear: bool,
     /// Forces with which jaws drag nodes that slip through them [N].
     pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
@@ -64,6 +68,8 @@ impl<T: Scalar> ImplicitMemory<T> {
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, rings)),
             matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            reactions: zeros(),
+            is_linear: false,
             dragged: Vec::with_capacity(nodes),
             history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
         }

@@ -23,7 +23,7 @@ const STEEP: f64 = 0.5;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
 /// The most solves of a linearised step between which contacts close or open.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 12;
 /// Iterations of Newton's method after which contacts stay as they are.
 const DECIDED: u32 = 20;
 /// The most lengths that the line search tries.
@@ -54,6 +54,7 @@ impl<T: Scalar> Step<'_, T> {
             let astray = climbed || after.lack > before.lack.max(ASTRAY * after.scale);
             let astray = astray && after.lack > solve.rounding;
             if !astray && after.lack.is_finite() {
+                self.memory.is_linear = true;
                 return ImplicitReport {
                     newton_iterations: 1,
                     linear_iterations: solve.iterations,
@@ -75,6 +76,7 @@ impl<T: Scalar> Step<'_, T> {
 
     /// Linear solves with a line search, until the forces balance.
     pub(super) fn solve_in_full(&mut self, relative: f64, at_most: u32) -> ImplicitReport {
+        self.memory.is_linear = false;
         let mut report = ImplicitReport { converged: false, ..ImplicitReport::NOTHING };
         let mut balance = self.evaluate();
         let (mut scale, mut floor) = (0.0f64, 0.0);

@@ -95,12 +95,14 @@ impl<T: Scalar> Step<'_, T> {
         slips
     }
 
-    /// The force that carries a held node through the step [N]: what the other forces on it lack, and what its speeding up takes.
+    /// The force that carries a held node through the step [N]: what the other forces on it lack, in the equations that were solved, and
+    /// what its speeding up takes.
     fn holding_force(&self, node: usize) -> Vec3<f64> {
         let memory = &*self.memory;
         let speeding = self.end_velocity(node) - memory.velocities[node];
         let inertial = speeding.cast::<f64>() * (self.body.state.masses[node].to_f64() / self.dt);
-        inertial - memory.lack[node].cast()
+        let lack = if memory.is_linear { -memory.reactions[node] } else { memory.lack[node] };
+        inertial - lack.cast()
     }
 
     /// Writes down what the tools did, and where nodes that slipped are between the jaws now.
