@@ -3,7 +3,7 @@
 use super::{
     Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
 };
-use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
+use crate::material::{LawKind, Tissue};
 
 /// What a user should know about a model before choosing it.
 #[derive(Clone, Copy, Debug, PartialEq)]
