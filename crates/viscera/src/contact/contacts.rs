@@ -201,18 +201,23 @@ impl Contacts {
         }
     }
 
-    /// Friction that an implicit step begins with, of contacts that were there in the one before.
+    /// Friction that an implicit step begins with. Contacts that were there in the one before go on with theirs; others slip as well as
+    /// the one that slips best on their rod: where tissue slides, it comes to new contacts all the time, and one that stuck held it back.
     pub(crate) fn find_before(&mut self, tractions: &[Traction], rods: &[MovingCapsule]) {
-        for contact in &mut self.list {
-            let rod = rods[contact.rod as usize];
-            let known = tractions.iter().find(|old| old.is_of(contact.feature, rod.tool, rod.part));
-            if let Some(old) = known {
-                let force = old.force();
-                contact.before = force - contact.normal * contact.normal.dot(force);
-                if contact.stiffness == 0.0 {
-                    contact.grip = old.grip();
-                }
+        for place in 0..self.list.len() {
+            let contact = &self.list[place];
+            if contact.stiffness > 0.0 {
+                continue;
             }
+            let rod = rods[contact.rod as usize];
+            let of_rod = || tractions.iter().filter(|old| old.is_of_rod(rod.tool, rod.part));
+            let known = of_rod().find(|old| old.is_of(contact.feature));
+            let others = self.list.iter().filter(|other| other.rod == contact.rod && other.stiffness > 0.0);
+            let slippery = others.map(|other| other.grip).chain(of_rod().map(Traction::grip)).fold(1.0, f64::min);
+            let contact = &mut self.list[place];
+            contact.grip = known.map_or(slippery, Traction::grip);
+            let force = known.map_or(Point::ZERO, Traction::force);
+            contact.before = force - contact.normal * contact.normal.dot(force);
         }
     }
 

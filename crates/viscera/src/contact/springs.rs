@@ -20,7 +20,7 @@ use crate::mesh::Point;
 /// Stiffness of a contact over that of the matrix's diagonal at its point.
 const STIFFER: f64 = 20.0;
 /// Friction is found anew while it is off by more than this share of its limit.
-const SETTLED: f64 = 2e-2;
+const SETTLED: f64 = 5e-2;
 
 /// Share of the force before which a contact that was made softer still takes up when it holds.
 const HOLDS: f64 = 0.8;
@@ -44,8 +44,12 @@ impl Traction {
         Self { feature, tool, part, force, grip }
     }
 
-    pub(super) fn is_of(&self, feature: [u32; 3], tool: u32, part: u32) -> bool {
-        (self.feature, self.tool, self.part) == (feature, tool, part)
+    pub(super) fn is_of_rod(&self, tool: u32, part: u32) -> bool {
+        (self.tool, self.part) == (tool, part)
+    }
+
+    pub(super) fn is_of(&self, feature: [u32; 3]) -> bool {
+        self.feature == feature
     }
 
     pub(super) fn force(&self) -> Vec3<f64> {

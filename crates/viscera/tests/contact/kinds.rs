@@ -70,7 +70,9 @@ fn the_block_s_momentum_is_the_impulse_of_the_tool() {
         let (mut world, _) = PLAIN.world::<f64>(kind, integrator, true);
         let id = world.instrument_ids().next().unwrap();
         let (mut given, mut size) = (Vector::ZERO, 0.0);
-        for step in 0..15 {
+        // Before a cautery burns: what is burnt takes its momentum along.
+        let steps = if kind == InstrumentKind::Cautery { 12 } else { 15 };
+        for step in 0..steps {
             PLAIN.play(&mut world, step, step + 1);
             given += world.tool(id).force() * world.config().step;
             size += world.tool(id).force().norm() * world.config().step;
