@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the engine as WebAssembly into web/src/engine/generated, for a page that needs no server.
-# Takes rustup's target where it can be had, or else Debian's compiler for the web, where that is new enough; says what is missing otherwise.
+# Takes rustup's target where it can be had, or else the library's sources; says what is missing otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,14 +22,13 @@ flags="-C target-feature=+simd128"
 
 if has_target || { command -v rustup >/dev/null && rustup target add wasm32-unknown-unknown >/dev/null 2>&1 && has_target; }; then
     RUSTFLAGS="$flags" cargo build --locked --profile web --target wasm32-unknown-unknown -p viscera-web
-elif [ -x "${WEB_RUSTC:-/usr/bin/rustc}" ] && [ -x "${WEB_CARGO:-/usr/bin/cargo}" ] && [ -n "${WEB_RUST_SRC:-}" ]; then
-    # A compiler with the library's sources beside it: the library is built along.
-    RUSTC="${WEB_RUSTC:-/usr/bin/rustc}" RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" \
-        RUSTFLAGS="$flags -C linker=${WEB_LINKER:-wasm-ld}" "${WEB_CARGO:-/usr/bin/cargo}" build --locked --profile web \
+elif [ -n "${WEB_RUST_SRC:-}" ]; then
+    # The library is built along, from its sources (the folder `library`), which have to be of the compiler's version.
+    RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" RUSTFLAGS="$flags" cargo build --locked --profile web \
         --target wasm32-unknown-unknown -Zbuild-std=std,panic_abort -p viscera-web
 else
-    missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`. Without rustup, \
-name a compiler of at least $(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml) by WEB_RUSTC and WEB_CARGO, and its library's sources by WEB_RUST_SRC"
+    missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`. Where rustup cannot fetch it, \
+name the folder \`library\` of the sources of $(rustc --version) by WEB_RUST_SRC (Debian: package rust-src; RUSTUP_TOOLCHAIN chooses another compiler)"
 fi
 
 # The tool has to be of the library's version to the last digit.
