@@ -1,6 +1,9 @@
 import './style/tokens.css';
 import './style/bar.css';
 import './style/theatre.css';
+import './style/tools.css';
+import './style/measures.css';
+import './style/words.css';
 import './style/panel.css';
 import { Charts } from './chart/charts';
 import { fillBar } from './chrome/bar';

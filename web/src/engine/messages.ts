@@ -210,6 +210,8 @@ export interface FrameInstrument {
   holds: boolean;
   force: Vector;
   torque: Vector;
+  /** Its rigid parts as tissue feels them, seven numbers each: from, to, radius [m]. */
+  parts?: Float32Array;
   stamp?: number;
 }
 
@@ -238,6 +240,8 @@ export interface Frame {
   bodies: FrameBody[];
   colouring: { by: string; unit: string; low: number; high: number };
   instruments: FrameInstrument[];
+  /** Number of the last command that this frame knows of. */
+  request?: number;
   observables?: Observables[];
   recording?: { seconds: number };
   replay?: { name: string; seconds: number; of: number; agrees: boolean };

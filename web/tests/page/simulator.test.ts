@@ -34,6 +34,20 @@ async function openText(page: Page, name: string, text: string): Promise<void> {
     .setInputFiles({ name, mimeType: 'application/toml', buffer: Buffer.from(text) });
 }
 
+/** Brings a tool of this kind in, and waits until it is in hand. */
+async function bringIn(page: Page, title: string): Promise<void> {
+  const before = await number(page, ({ scene }) => scene?.instruments.length ?? 0);
+  await page.getByRole('button', { name: 'Add' }).click();
+  await page.getByRole('menuitem', { name: title }).click();
+  await expect(page.getByRole('radio', { checked: true, name: new RegExp(title, 'i') })).toBeVisible();
+  await expect.poll(() => number(page, ({ frame }) => frame?.instruments.length ?? 0)).toBe(before + 1);
+}
+
+const holds = (page: Page) =>
+  number(page, ({ frame, chosen }) =>
+    Number(frame?.instruments.find(({ instrument }) => instrument === chosen)?.holds ?? false),
+  );
+
 async function openBlock(page: Page): Promise<void> {
   const before = await number(page, ({ scene }) => scene?.epoch ?? -1);
   await openText(page, 'block.toml', BLOCK);
@@ -102,22 +116,23 @@ for (const engine of ['native', 'wasm'] as const) {
     });
 
     test('grasped and dragged, tissue comes along', async () => {
-      await page.getByRole('radio', { name: 'Grasper' }).click();
-      const grip = await place(page, [0.105, 0.03, 0.04]);
+      await bringIn(page, 'Grasper');
+      const grip = await place(page, [0.1, 0.02, 0.04]);
       expect(await page.evaluate(({ x, y }) => window.viscera.state().under(x, y), grip)).toBe('tissue');
       const before = await sag(page);
       await page.mouse.move(grip.x, grip.y);
       await page.mouse.down();
-      await expect.poll(async () => (await state(page)).frame?.instruments[0]?.holds).toBe(true);
+      await expect.poll(() => holds(page)).toBe(1);
       await page.mouse.move(grip.x + 20, grip.y - 60, { steps: 8 });
       await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.01);
-      const force = await number(page, ({ frame }) =>
-        Math.hypot(...(frame?.instruments[0]?.force ?? [0, 0, 0])),
-      );
+      const force = await number(page, ({ frame, chosen }) => {
+        const tool = frame?.instruments.find(({ instrument }) => instrument === chosen);
+        return Math.hypot(...(tool?.force ?? [0, 0, 0]));
+      });
       expect(force).toBeGreaterThan(0);
       await page.screenshot({ path: `tests/artefacts/${engine}-grasped.png` });
       await page.mouse.up();
-      await expect.poll(async () => (await state(page)).frame?.instruments[0]?.holds).toBe(false);
+      await expect.poll(() => holds(page)).toBe(0);
     });
 
     test('softer tissue sags more', async () => {
@@ -163,8 +178,8 @@ for (const engine of ['native', 'wasm'] as const) {
     });
 
     test('the cautery takes cells away', async () => {
-      await page.getByRole('radio', { name: 'Cautery' }).click();
-      const spot = await place(page, [0.05, 0.03, 0.04]);
+      await bringIn(page, 'Cautery');
+      const spot = await place(page, [0.05, 0.02, 0.04]);
       await page.mouse.move(spot.x, spot.y);
       await page.mouse.down();
       await expect

@@ -8,7 +8,7 @@ test('bulk arrays are read wherever they begin in the message', () => {
   // Names of growing length move the array through all alignments.
   for (const name of ['', 'a', 'ab', 'abc']) {
     const body = { epoch: 0, positions: bytes(1, 2.5, -3) };
-    const message = decodeMessage(encode({ type: 'frame', name, bodies: [body] }));
+    const message = decodeMessage(encode({ type: 'frame', name, bodies: [body], instruments: [] }));
     expect(message?.type).toBe('frame');
     if (message?.type === 'frame') expect([...message.bodies[0]!.positions]).toEqual([1, 2.5, -3]);
   }
@@ -25,7 +25,7 @@ test.each([
   ['no type', encode({ kind: 'frame' })],
   [
     'an array that is cut off',
-    encode({ type: 'frame', bodies: [{ epoch: 0, positions: new Uint8Array(7) }] }),
+    encode({ type: 'frame', bodies: [{ epoch: 0, positions: new Uint8Array(7) }], instruments: [] }),
   ],
   ['positions that are numbers', encode({ type: 'frame', bodies: [{ epoch: 0, positions: [1, 2, 3] }] })],
   ['bodies that are none', encode({ type: 'frame', bodies: 7 })],
