@@ -138,8 +138,15 @@ impl PyBody {
             fixed: each(fix)?.iter().map(region).collect::<PyResult<_>>()?,
             prescribed,
             guided,
-            loads: each(load)?.iter().map(|load| Ok(load.cast::<PyLoad>()?.get().0.clone())).collect::<PyResult<_>>()?,
-            loose_pieces: choose("loose_pieces", loose_pieces, &[("free", LoosePieces::Free), ("drop", LoosePieces::Drop)])?,
+            loads: each(load)?
+                .iter()
+                .map(|load| Ok(load.cast::<PyLoad>()?.get().0.clone()))
+                .collect::<PyResult<_>>()?,
+            loose_pieces: choose(
+                "loose_pieces",
+                loose_pieces,
+                &[("free", LoosePieces::Free), ("drop", LoosePieces::Drop)],
+            )?,
         }))
     }
 

@@ -1,7 +1,7 @@
 //! Depth pictures: how far a surface is from a camera, pixel by pixel.
 
-use numpy::ndarray::Array2;
 use numpy::PyArray2;
+use numpy::ndarray::Array2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use viscera::math::Vec3;
@@ -101,7 +101,9 @@ fn view(eye: [f64; 3], target: [f64; 3], up: [f64; 3], angle: f64, width: usize,
     let forward = (Vec3::from(target) - eye).normalized();
     let right = forward.and_then(|forward| forward.cross(Vec3::from(up)).normalized());
     let (Some(forward), Some(right)) = (forward, right) else {
-        return Err(PyValueError::new_err("the camera has no direction: eye and target fall together, or up lies along the view"));
+        return Err(PyValueError::new_err(
+            "the camera has no direction: eye and target fall together, or up lies along the view",
+        ));
     };
     if !(angle > 0.0 && angle < std::f64::consts::PI) {
         return Err(PyValueError::new_err(format!("field_of_view = {angle} must be above 0 and below pi [rad]")));

@@ -68,7 +68,9 @@ pub(crate) fn scene(
 
 fn body(body: &Description, file: &str) -> PyResult<Json> {
     let &[density] = &body.densities[..] else {
-        return Err(refuse("a scene file has one density for a body, and `part`s with others; this one has one for each cell"));
+        return Err(refuse(
+            "a scene file has one density for a body, and `part`s with others; this one has one for each cell",
+        ));
     };
     let each = |regions: &[Region]| Json::from(regions.iter().map(region).collect::<Vec<_>>());
     Ok(object! {
@@ -110,8 +112,12 @@ fn curve<V: viscera::curve::CurveValue>(curve: &Curve<V>, value: impl Fn(V) -> J
 fn load(load: &Load) -> Json {
     match load {
         Load::Force { region: at, total } => object! { "region": region(at), "force": curve(total, vector) },
-        Load::Pressure { region: at, pressure } => object! { "region": region(at), "pressure": curve(pressure, Json::from) },
-        Load::Traction { region: at, traction } => object! { "region": region(at), "traction": curve(traction, vector) },
+        Load::Pressure { region: at, pressure } => {
+            object! { "region": region(at), "pressure": curve(pressure, Json::from) }
+        }
+        Load::Traction { region: at, traction } => {
+            object! { "region": region(at), "traction": curve(traction, vector) }
+        }
     }
 }
 
@@ -146,7 +152,9 @@ fn law(model: &AnyModel) -> PyResult<Json> {
     let recipe = model.recipe();
     let tissue = recipe.tissue();
     if !tissue.is_uniform() {
-        return Err(refuse("a scene file has one law for a body, and `part`s with others; this one has one for each cell"));
+        return Err(refuse(
+            "a scene file has one law for a body, and `part`s with others; this one has one for each cell",
+        ));
     }
     let (values, kind) = (tissue.values(0), tissue.kind());
     let (name, has_fibres) = match kind {
@@ -156,10 +164,12 @@ fn law(model: &AnyModel) -> PyResult<Json> {
         isotropic => (isotropic.name(), false),
     };
     let rest = tissue.at_rest(0);
-    let fibre = has_fibres.then(|| object! {
-        "direction": vector(rest.direction),
-        "lambda": Json::from(rest.lame.lambda + 2.0 * rest.fibre_stiffness),
-        "mu": Json::from(rest.lame.mu),
+    let fibre = has_fibres.then(|| {
+        object! {
+            "direction": vector(rest.direction),
+            "lambda": Json::from(rest.lame.lambda + 2.0 * rest.fibre_stiffness),
+            "mu": Json::from(rest.lame.mu),
+        }
     });
     Ok(object! {
         "kind": Json::from(name),

@@ -2,8 +2,8 @@
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::world::{AnyWorld, PyWorld, in_world};
 
@@ -18,7 +18,8 @@ impl PyThreads {
     #[pyo3(signature = (count=0))]
     fn new(count: usize) -> PyResult<Self> {
         let pool = ThreadPoolBuilder::new().num_threads(count).build();
-        pool.map(Self).map_err(|error| PyRuntimeError::new_err(format!("{count} threads could not be started: {error}")))
+        pool.map(Self)
+            .map_err(|error| PyRuntimeError::new_err(format!("{count} threads could not be started: {error}")))
     }
 
     /// How many there are.
@@ -37,9 +38,11 @@ impl PyThreads {
         }
         let mut inner: Vec<&mut AnyWorld> = borrowed.iter_mut().map(|world| &mut world.world).collect();
         let outcomes = py.detach(|| {
-            let step = |world: &mut &mut AnyWorld| in_world!(&mut **world, world => {
-                (0..count).try_for_each(|_| world.step().map(drop)).err().map(|error| error.to_string())
-            });
+            let step = |world: &mut &mut AnyWorld| {
+                in_world!(&mut **world, world => {
+                    (0..count).try_for_each(|_| world.step().map(drop)).err().map(|error| error.to_string())
+                })
+            };
             self.0.install(|| inner.par_iter_mut().with_max_len(1).map(step).collect())
         });
         borrowed.iter().try_for_each(|world| world.refresh(py))?;

@@ -33,7 +33,12 @@ impl<T, E: Raise> OrRaise<T> for Result<T, E> {
     }
 }
 
-create_exception!(viscera, Error, PyException, "What all exceptions of viscera are: something that the engine refuses, and why.");
+create_exception!(
+    viscera,
+    Error,
+    PyException,
+    "What all exceptions of viscera are: something that the engine refuses, and why."
+);
 
 macro_rules! exceptions {
     ($($class:ident = $error:ty, $doc:literal;)+) => {

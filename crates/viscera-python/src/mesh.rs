@@ -65,7 +65,9 @@ fn named<const FACE: usize>(
         match parts.cast::<PyDict>() {
             Ok(parts) => {
                 let list = |key: &str| match parts.get_item(key)? {
-                    Some(list) => list.extract::<Integers<'_>>().map_err(PyErr::from).and_then(|list| numbers(&list, key)),
+                    Some(list) => {
+                        list.extract::<Integers<'_>>().map_err(PyErr::from).and_then(|list| numbers(&list, key))
+                    }
                     None => Ok(Vec::new()),
                 };
                 (region.nodes, region.cells) = (list("nodes")?, list("cells")?);
@@ -92,7 +94,8 @@ fn named<const FACE: usize>(
 
 fn numbers(list: &Integers<'_>, what: &str) -> PyResult<Vec<u32>> {
     let number = |&value: &i64| {
-        u32::try_from(value).map_err(|_| PyValueError::new_err(format!("{what} holds {value}, which is no number of one")))
+        u32::try_from(value)
+            .map_err(|_| PyValueError::new_err(format!("{what} holds {value}, which is no number of one")))
     };
     list.as_array().iter().map(number).collect()
 }

@@ -10,7 +10,7 @@ use viscera::mesh::{GaussRule, VolumeMesh};
 use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement, Tangent};
 use viscera::model::{BlockSink, ForceModel, ModelRecipe, Precision, Scratch};
 
-use crate::arrays::{NumpyScalar, Numbers, list_array, matrix_array, vector_array, vectors_of};
+use crate::arrays::{Numbers, NumpyScalar, list_array, matrix_array, vector_array, vectors_of};
 use crate::error::OrRaise;
 use crate::law::tissue;
 use crate::mesh::PyVolumeMesh;
@@ -341,7 +341,10 @@ impl PyForceModel {
     fn remove(&mut self, cells: Vec<u32>) -> PyResult<()> {
         let count = self.mesh.cell_count();
         if let Some(cell) = cells.iter().find(|&&cell| cell as usize >= count) {
-            return Err(PyValueError::new_err(format!("there is no cell {cell}: cells are numbered 0 to {}", count - 1)));
+            return Err(PyValueError::new_err(format!(
+                "there is no cell {cell}: cells are numbered 0 to {}",
+                count - 1
+            )));
         }
         in_precision!(&mut self.models, models, _scratch => models.iter_mut().for_each(|model| model.remove(&cells)));
         Ok(())

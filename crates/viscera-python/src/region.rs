@@ -142,7 +142,9 @@ fn finite<V: CurveValue>(value: V) -> PyResult<Curve<V>> {
 pub(crate) fn number_curve(given: &Bound<'_, PyAny>) -> PyResult<Curve<f64>> {
     match given.cast::<PyCurve>().map(|curve| &curve.get().0) {
         Ok(AnyCurve::Number(curve)) => return Ok(curve.clone()),
-        Ok(AnyCurve::Vector(_)) => return Err(PyTypeError::new_err("a curve of numbers is needed, and this is one of vectors")),
+        Ok(AnyCurve::Vector(_)) => {
+            return Err(PyTypeError::new_err("a curve of numbers is needed, and this is one of vectors"));
+        }
         Err(_) => {}
     }
     match given.extract::<f64>() {
@@ -155,7 +157,9 @@ pub(crate) fn number_curve(given: &Bound<'_, PyAny>) -> PyResult<Curve<f64>> {
 pub(crate) fn vector_curve(given: &Bound<'_, PyAny>) -> PyResult<Curve<Vec3<f64>>> {
     match given.cast::<PyCurve>().map(|curve| &curve.get().0) {
         Ok(AnyCurve::Vector(curve)) => return Ok(curve.clone()),
-        Ok(AnyCurve::Number(_)) => return Err(PyTypeError::new_err("a curve of vectors is needed, and this is one of numbers")),
+        Ok(AnyCurve::Number(_)) => {
+            return Err(PyTypeError::new_err("a curve of vectors is needed, and this is one of numbers"));
+        }
         Err(_) => {}
     }
     match given.extract::<[f64; 3]>() {

@@ -21,7 +21,8 @@ pub(crate) struct PyScene {
 
 fn from_json<T: serde::de::DeserializeOwned>(py: Python<'_>, value: &Bound<'_, PyAny>) -> PyResult<T> {
     let text: String = py.import("json")?.call_method1("dumps", (value,))?.extract()?;
-    serde_json::from_str(&text).map_err(|error| SceneErrors::from(SceneError::without_place(error.to_string(), "")).raise())
+    serde_json::from_str(&text)
+        .map_err(|error| SceneErrors::from(SceneError::without_place(error.to_string(), "")).raise())
 }
 
 pub(crate) fn to_python<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
@@ -96,9 +97,11 @@ impl PyScene {
     ) -> PyResult<(Py<PyWorld>, u64, Vec<(String, String)>)> {
         let precision = match precision {
             None => self.scene.check().or_raise()?.precision,
-            Some(word) => {
-                crate::model::choose("precision", word, &[("single", Precision::Single), ("double", Precision::Double)])?
-            }
+            Some(word) => crate::model::choose(
+                "precision",
+                word,
+                &[("single", Precision::Single), ("double", Precision::Double)],
+            )?,
         };
         let executor = Executor::threads(threads).or_raise()?;
         let built = py.detach(|| match precision {

@@ -14,7 +14,7 @@ use viscera::solver::{Iterative, LinearSolver};
 use viscera::world::BodyId;
 use viscera_direct::Cholesky;
 
-use crate::arrays::{NumpyScalar, Numbers, index_array, list_array, matrix_array, vector_array, vectors_of};
+use crate::arrays::{Numbers, NumpyScalar, index_array, list_array, matrix_array, vector_array, vectors_of};
 use crate::error::OrRaise;
 use crate::mesh::mesh_object;
 use crate::model::{BlockArrays, Blocks, choose};
@@ -307,8 +307,9 @@ impl PySimulatedBody {
         let mut solver = self::solver(solver, 1e-12)?;
         let mut world = self.world.borrow_mut(py);
         let inner = &mut world.world;
-        let answers =
-            py.detach(|| in_world!(inner, world => world.respond(self.id, &right, inertia, solver.as_mut()))).or_raise()?;
+        let answers = py
+            .detach(|| in_world!(inner, world => world.respond(self.id, &right, inertia, solver.as_mut())))
+            .or_raise()?;
         let all: Vec<Vec3<f64>> = answers.into_iter().flatten().collect();
         let shape = view.shape().to_vec();
         vector_array(py, &all).into_any().call_method1("reshape", (shape,))

@@ -10,7 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use viscera::body::SimulatedBody;
 use viscera::executor::Executor;
-use viscera::world::{Attachment, AttachmentId, BodyId, InstrumentId, Snapshot, StepError, StepReport, World, WorldConfig};
+use viscera::world::{
+    Attachment, AttachmentId, BodyId, InstrumentId, Snapshot, StepError, StepReport, World, WorldConfig,
+};
 use viscera_scene::file::SceneFile;
 
 use crate::arrays::{NumpyScalar, vector_array};
@@ -160,9 +162,7 @@ impl PyWorld {
     }
 
     fn add_description(&mut self, py: Python<'_>, description: &Description) -> PyResult<BodyId> {
-        let id = py
-            .detach(|| in_world!(&mut self.world, world => world.add(description.body())))
-            .or_raise()?;
+        let id = py.detach(|| in_world!(&mut self.world, world => world.add(description.body()))).or_raise()?;
         self.descriptions.push(Some(description.clone()));
         Ok(id)
     }
@@ -333,8 +333,12 @@ impl PyWorld {
     fn restore(&mut self, py: Python<'_>, snapshot: &PySnapshot) -> PyResult<()> {
         let world = &mut self.world;
         match (world, &snapshot.0) {
-            (AnyWorld::Single(world), AnySnapshot::Single(snapshot)) => py.detach(|| world.restore(snapshot)).or_raise()?,
-            (AnyWorld::Double(world), AnySnapshot::Double(snapshot)) => py.detach(|| world.restore(snapshot)).or_raise()?,
+            (AnyWorld::Single(world), AnySnapshot::Single(snapshot)) => {
+                py.detach(|| world.restore(snapshot)).or_raise()?
+            }
+            (AnyWorld::Double(world), AnySnapshot::Double(snapshot)) => {
+                py.detach(|| world.restore(snapshot)).or_raise()?
+            }
             _ => return Err(PyValueError::new_err("the snapshot is of a world in the other precision")),
         }
         self.refresh(py)
@@ -354,15 +358,22 @@ impl PyWorld {
     #[pyo3(signature = (folder, *, duration, name="scene"))]
     fn write_scene(&self, folder: PathBuf, duration: f64, name: &str) -> PyResult<PathBuf> {
         if !self.instrument_names.is_empty() || in_world!(&self.world, world => world.steps()) > 0 {
-            return Err(PyValueError::new_err("only a world without instruments, at its beginning, can be written as a scene"));
+            return Err(PyValueError::new_err(
+                "only a world without instruments, at its beginning, can be written as a scene",
+            ));
         }
         let mut bodies = IndexMap::new();
         for body in &self.descriptions {
             let Some(body) = body else {
-                return Err(PyValueError::new_err("the world was built from a scene: write that, with `Scene.to_toml`"));
+                return Err(PyValueError::new_err(
+                    "the world was built from a scene: write that, with `Scene.to_toml`",
+                ));
             };
             if bodies.insert(body.name.clone(), body.clone()).is_some() {
-                return Err(PyValueError::new_err(format!("two bodies are named `{}`; names in a scene differ", body.name)));
+                return Err(PyValueError::new_err(format!(
+                    "two bodies are named `{}`; names in a scene differ",
+                    body.name
+                )));
             }
         }
         let config = in_world!(&self.world, world => world.config().clone());

@@ -24,7 +24,9 @@ pub(super) fn cases(vary: &[String]) -> Result<Vec<Case>, Failure> {
     let mut cases = vec![Case { changes: Vec::new() }];
     for entry in vary {
         let (key, values) = entry.split_once('=').ok_or_else(|| {
-            Failure::input(format!("--vary {entry}: there is no `=`; write it as --vary body.liver.law.young=\"4 kPa,8 kPa\""))
+            Failure::input(format!(
+                "--vary {entry}: there is no `=`; write it as --vary body.liver.law.young=\"4 kPa,8 kPa\""
+            ))
         })?;
         let values = split(values);
         let with = |case: &Case, value: &String| {
@@ -135,7 +137,9 @@ fn measure<T: Precision>(built: &mut BuiltScene<T>) -> Vec<(String, f64)> {
     }
     for (name, &id) in &built.instruments {
         let force = built.world.observe_instrument(id).force.to_array();
-        row.extend(["x", "y", "z"].into_iter().zip(force).map(|(axis, value)| (format!("{name}: force {axis} [N]"), value)));
+        row.extend(
+            ["x", "y", "z"].into_iter().zip(force).map(|(axis, value)| (format!("{name}: force {axis} [N]"), value)),
+        );
     }
     row
 }
@@ -148,15 +152,11 @@ mod tests {
     fn values_combine_with_the_last_key_fastest_and_lists_stay_whole() {
         let vary = ["a.young=2 kPa, 4 kPa".to_owned(), "gravity=[0, -1, 0],[0, -2, 0]".to_owned()];
         let cases = cases(&vary).map_err(|failure| failure.to_string()).unwrap();
-        let texts: Vec<_> = cases.iter().map(|case| case.changes.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>()).collect();
+        let texts: Vec<_> =
+            cases.iter().map(|case| case.changes.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>()).collect();
         assert_eq!(
             texts,
-            [
-                ["2 kPa", "[0, -1, 0]"],
-                ["2 kPa", "[0, -2, 0]"],
-                ["4 kPa", "[0, -1, 0]"],
-                ["4 kPa", "[0, -2, 0]"]
-            ]
+            [["2 kPa", "[0, -1, 0]"], ["2 kPa", "[0, -2, 0]"], ["4 kPa", "[0, -1, 0]"], ["4 kPa", "[0, -2, 0]"]]
         );
     }
 }
