@@ -1,8 +1,10 @@
 """Sweeps: the same table from threads, from a cluster, from a cluster that loses a worker, and from the command line."""
 
+import contextlib
 import csv
 import os
 import subprocess
+import threading
 import time
 
 import pytest
@@ -21,8 +23,9 @@ def test_a_sweep_has_a_row_for_each_case_in_their_order():
     table = viscera.sweep(viscera.Scene.parse(SCENE), VALUES, threads=2)
     assert table["body.bar.law.young"] == ["3 kPa"] * 2 + ["6 kPa"] * 2 + ["12 kPa"] * 2
     assert table["error"] == [None] * 6
-    softest, stiffest = table["bar: max displacement [m]"][0], table["bar: max displacement [m]"][4]
-    assert softest > stiffest > 0
+    # After 60 ms it still falls: twice the weight, twice the way, whatever the stiffness.
+    light, heavy = table["bar: max displacement [m]"][:2]
+    assert 1.9 < heavy / light < 2.1
     alone = viscera.Scene.parse(SCENE)
     alone.set("body.bar.law.young", "6 kPa")
     alone.set("gravity", [0, -2, 0])
@@ -67,19 +70,25 @@ def test_a_cluster_that_loses_a_worker_gives_the_table_of_the_threads(tmp_path):
     scene, values = viscera.Scene.parse(SCENE), {"body.bar.law.young": [1000.0 * (3 + k) for k in range(10)]}
     wanted = viscera.sweep(scene, values, measure=sag)
     runs = tmp_path / "runs"
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
-        with distributed.Client(cluster) as client:
-            import threading
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None)
+    client = distributed.Client(cluster)
 
-            def kill_one():
-                while not (runs.exists() and len(runs.read_text().splitlines()) >= 2):
-                    time.sleep(0.02)
-                os.kill(int(runs.read_text().splitlines()[0]), 9)
+    def kill_one():
+        while not (runs.exists() and len(runs.read_text().splitlines()) >= 2):
+            time.sleep(0.02)
+        os.kill(int(runs.read_text().splitlines()[0]), 9)
 
-            killer = threading.Thread(target=kill_one)
-            killer.start()
-            table = viscera.sweep(scene, values, client=client, measure=count(str(runs)))
-            killer.join()
+    killer = threading.Thread(target=kill_one)
+    killer.start()
+    try:
+        table = viscera.sweep(scene, values, client=client, measure=count(str(runs)))
+        killer.join()
+        client.wait_for_workers(2, timeout=60)
+    finally:
+        client.close()
+        # A busy machine ends processes more slowly than distributed waits for them.
+        with contextlib.suppress(TimeoutError):
+            cluster.close(timeout=60)
     assert table.rows == wanted.rows
 
 

@@ -37,14 +37,18 @@ class _OnLiver(Episode):
     def mesh(self):
         return _liver(self.settings.cells)
 
+    #: Middle of what is held [m].
+    back = (0.0, 0.01, -0.025)
+
     def held(self):
-        return viscera.Region.sphere([0.0, 0.01, -0.025], 0.035)
+        return viscera.Region.sphere(list(self.back), 0.035)
 
     def _top(self, rng) -> int:
         """A node of the upper side, away from what is held."""
         nodes = self.rest[self.skin]
-        upper = nodes[:, 1] > np.quantile(nodes[:, 1], 0.7)
-        return int(rng.choice(self.skin[upper]))
+        upper = nodes[:, 1] > np.quantile(nodes[:, 1], 0.6)
+        away = np.linalg.norm(nodes - np.array(self.back), axis=1) > 0.055
+        return int(rng.choice(self.skin[upper & away]))
 
 
 class Reach(_OnLiver):
