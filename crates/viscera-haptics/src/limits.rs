@@ -74,8 +74,8 @@ impl Limiter {
 
     /// The wanted `force` [N], as near as the limits allow, on a hand that moves at `velocity` [m/s], `dt` [s] after the last.
     pub fn limit(&self, force: Vector, velocity: Vector, dt: f64) -> Vector {
-        let change = force - self.last;
-        let force = self.last + shortened(change, self.limits.rate * dt);
+        let (change, most) = (force - self.last, self.limits.rate * dt);
+        let force = if change.norm() <= most { force } else { self.last + shortened(change, most) };
         self.within_force(self.within_power(force, velocity))
     }
 

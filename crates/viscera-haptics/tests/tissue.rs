@@ -85,7 +85,7 @@ fn a_hand_feels_the_bar_that_it_presses() {
     let expected = YOUNG * SIDE * SIDE / HEIGHT * depth;
     let felt = device.felt();
     // What still swings, after a second of damping at 20/s, is e^-10.
-    assert!((felt.z / expected - 1.0).abs() < 1e-3, "{felt:?}, not {expected} N");
+    assert!((felt.z / expected - 1.0).abs() < 1e-3, "{felt:?}, not {expected} N; {:?}", channel.state());
     // What the hand has put in is what the bar holds, ½ K x², and what damping took of it.
     let (energy, stored) = (channel.state().energy, 0.5 * expected * depth);
     assert!(energy > stored && energy < 1.5 * stored, "{energy} J, {stored} J stored");

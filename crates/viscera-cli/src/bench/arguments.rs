@@ -68,7 +68,7 @@ impl HapticsArguments {
     /// What makes 6 000 tetrahedra of the scene that is taken where none is named.
     pub(super) fn default_size(&self) -> Option<(&'static str, &'static str)> {
         let is_sized = self.scene.is_some() || self.set.iter().any(|change| change.contains("mesh.edge"));
-        (!is_sized).then_some(("body.liver.mesh.edge", "18 mm"))
+        (!is_sized).then_some(("body.liver.mesh.edge", "16.3 mm"))
     }
 }
 
