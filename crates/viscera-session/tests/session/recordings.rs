@@ -151,10 +151,10 @@ fn farthest(page: &Page, axis: usize) -> [f64; 3] {
     [0, 1, 2].map(|axis| f64::from(vertex[axis]))
 }
 
-/// Takes the edge of the left lobe, lifts it, and lets go.
+/// Takes the top of the organ, lifts it, and lets go.
 fn grasp_and_lift(page: &mut Page) {
     coarse_liver(page);
-    let [x, y, z] = farthest(page, 0);
+    let [x, y, z] = farthest(page, 1);
     let grasper = page.add("grasper", [x, y + 0.06, z], [0.0, -1.0, 0.0]);
     for step in 0..=19 {
         page.lead(grasper, [x, y + 0.06 - 0.003 * f64::from(step), z], 0.0);
@@ -164,7 +164,7 @@ fn grasp_and_lift(page: &mut Page) {
         page.lead(grasper, [x, y + 0.003 + 0.001 * f64::from(step), z], 1.0);
         page.step(1);
     }
-    assert!(page.frame().instruments[0].holds, "the jaws hold the lobe");
+    assert!(page.frame().instruments[0].holds, "the jaws hold the organ");
     page.lead(grasper, [x, y + 0.06, z], 0.0);
     page.step(38);
 }
