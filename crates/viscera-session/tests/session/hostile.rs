@@ -36,7 +36,10 @@ fn malformed_messages_are_refused_with_a_reason_and_the_scene_goes_on() {
         (map(&[("type", "step".into()), ("count", 1_000_000.into())]), "1 to 1000"),
         ([map(&[("type", "pause".into())]), vec![0]].concat(), "1 bytes follow"),
         (map(&[("type", "colour".into()), ("by", "x".repeat(LONGEST_SHORT).into())]), "bytes"),
-        (map(&[("type", "move-instrument".into()), ("instrument", 0.into()), ("tip", "here".into())]), "tip"),
+        (
+            map(&[("type", "move-instrument".into()), ("instrument", 0.into()), ("tip", "here".into())]),
+            "expected an array of length 3",
+        ),
     ] {
         page.session.receive(&message);
         page.listen();

@@ -1,8 +1,4 @@
-use std::fs;
-use std::path::Path;
-
 use viscera_session::message::{Bytes, Command, RunState};
-use viscera_session::{library, recording::Recording};
 
 use crate::support::{BAR, Page};
 
@@ -106,82 +102,4 @@ fn what_is_no_recording_is_refused() {
     }
     page.say(Command::Replay { name: Some("nothing".into()), bytes: None });
     assert!(page.refusals()[0].reason.contains("no recording `nothing`"));
-}
-
-/// The recordings that are kept, on whatever processor this is: to the same bits where it is the one they were made on, to the same
-/// numbers elsewhere. With `VISCERA_RECORD=1` they are made anew, by [`hands`].
-#[test]
-fn kept_recordings_replay() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/recordings");
-    for (name, hands) in hands() {
-        let path = folder.join(format!("{name}.viscera-recording"));
-        if std::env::var_os("VISCERA_RECORD").is_some() {
-            let mut page = Page::open(BAR);
-            hands(&mut page);
-            page.say(Command::StopRecording {});
-            fs::create_dir_all(&folder).unwrap();
-            fs::write(&path, page.file()).unwrap();
-            continue;
-        }
-        let (_, bytes) = library::recordings().find(|(known, _)| *known == name).expect("the recording is built in");
-        assert!(Recording::decode(bytes).unwrap().seconds() > 1.0);
-        let mut page = Page::open(BAR);
-        let notices = play(&mut page, bytes.to_vec());
-        let last = notices.last().unwrap();
-        assert!(last.ends_with("to the same bits") || last.ends_with("to the same numbers"), "{name}: {notices:?}");
-    }
-}
-
-/// Names of the kept recordings, and the emulated users that made them.
-fn hands() -> [(&'static str, fn(&mut Page)); 2] {
-    [("grasp-and-lift", grasp_and_lift), ("press-and-soften", press_and_soften)]
-}
-
-fn coarse_liver(page: &mut Page) {
-    page.say(Command::OpenScene { name: "liver".into() });
-    page.set("body.liver.mesh.edge", 0.024);
-    assert_eq!(page.refusals(), []);
-    page.say(Command::StartRecording {});
-}
-
-/// The vertex that is farthest along an axis [m]: what the user aims at.
-fn farthest(page: &Page, axis: usize) -> [f64; 3] {
-    let places = page.positions(0);
-    let vertex = places.chunks_exact(3).max_by(|a, b| a[axis].total_cmp(&b[axis])).unwrap();
-    [0, 1, 2].map(|axis| f64::from(vertex[axis]))
-}
-
-/// Takes the edge of the left lobe, lifts it, and lets go.
-fn grasp_and_lift(page: &mut Page) {
-    coarse_liver(page);
-    let [x, y, z] = farthest(page, 0);
-    let grasper = page.add("grasper", [x, y + 0.06, z], [0.0, -1.0, 0.0]);
-    for step in 0..=19 {
-        page.lead(grasper, [x, y + 0.06 - 0.003 * f64::from(step), z], 0.0);
-        page.step(1);
-    }
-    for step in 0..=60 {
-        page.lead(grasper, [x, y + 0.003 + 0.001 * f64::from(step), z], 1.0);
-        page.step(1);
-    }
-    assert!(page.frame().instruments[0].holds, "the jaws hold the lobe");
-    page.lead(grasper, [x, y + 0.06, z], 0.0);
-    page.step(38);
-}
-
-/// Presses a probe into the organ from above while its tissue softens.
-fn press_and_soften(page: &mut Page) {
-    coarse_liver(page);
-    let [x, y, z] = farthest(page, 1);
-    let probe = page.add("probe", [x, y + 0.03, z], [0.0, -1.0, 0.0]);
-    let mut pressed: f64 = 0.0;
-    for step in 0..120 {
-        page.lead(probe, [x, y + 0.03 - 0.0005 * f64::from(step), z], 0.0);
-        if step == 80 {
-            page.set("body.liver.law.young", 3e3);
-        }
-        page.step(1);
-        pressed = pressed.max(page.frame().instruments[0].force[1]);
-    }
-    assert!(pressed > 0.05, "the tissue presses back: {pressed} N");
 }
