@@ -34,7 +34,7 @@ test.describe('with a stand-in for the session', () => {
     page = await browser.newPage({ viewport: DESK });
     await begin(page, session);
   });
-  test.afterAll(() => page.close());
+  test.afterAll(() => page?.close());
 
   test('everything on the page has a name and can be read, light and dark', async () => {
     await expect(page.getByText('Press on the tissue to grasp it')).toBeVisible();
