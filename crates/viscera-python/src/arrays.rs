@@ -69,14 +69,8 @@ pub(crate) fn scalars(numbers: &Numbers<'_>, what: &str) -> PyResult<Vec<f64>> {
 
 /// A new array of shape (n, 3).
 pub(crate) fn vector_array<'py, T: NumpyScalar>(py: Python<'py>, vectors: &[Vec3<T>]) -> Bound<'py, PyArray2<T>> {
-    let flat: Vec<T> = vectors.iter().flat_map(|v| v.to_array()).collect();
-    PyArray2::from_owned_array(py, shaped(flat, vectors.len()))
-}
-
-fn shaped<T>(flat: Vec<T>, rows: usize) -> Array2<T> {
-    let columns = if rows == 0 { 3 } else { flat.len() / rows };
-    // The shape fits by construction.
-    Array2::from_shape_vec((rows, columns), flat).unwrap_or_else(|_| Array2::from_shape_fn((0, 3), |_| unreachable!()))
+    let number = |(row, column): (usize, usize)| vectors[row].to_array()[column];
+    PyArray2::from_owned_array(py, Array2::from_shape_fn((vectors.len(), 3), number))
 }
 
 /// A new array of shape (n, 3, 3), entry [k, i, j] in row i and column j of matrix k.

@@ -145,6 +145,9 @@ pub(crate) fn add(world: &mut AnyWorld, instrument: &Bound<'_, PyAny>) -> PyResu
     Err(PyTypeError::new_err("an instrument is a Probe, a Grasper or a Cautery"))
 }
 
+/// A capsule: its two ends and its radius [m].
+type Ends = ([f64; 3], [f64; 3], f64);
+
 /// An instrument in a world.
 #[pyclass(frozen, name = "Instrument", module = "viscera")]
 pub(crate) struct PyTool {
@@ -260,7 +263,7 @@ impl PyTool {
 
     /// Its rigid parts now: (from, to, radius) of each capsule [m].
     #[getter]
-    fn capsules(&self, py: Python<'_>) -> PyResult<Vec<([f64; 3], [f64; 3], f64)>> {
+    fn capsules(&self, py: Python<'_>) -> PyResult<Vec<Ends>> {
         self.state(py)?;
         let capsules = in_world!(&self.world.borrow(py).world, world => world.tool_capsules(self.id).to_vec());
         Ok(capsules.into_iter().map(|part| (part.from.to_array(), part.to.to_array(), part.radius)).collect())

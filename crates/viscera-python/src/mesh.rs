@@ -65,17 +65,15 @@ fn named<const FACE: usize>(
         match parts.cast::<PyDict>() {
             Ok(parts) => {
                 let list = |key: &str| match parts.get_item(key)? {
-                    Some(list) => {
-                        list.extract::<Integers<'_>>().map_err(PyErr::from).and_then(|list| numbers(&list, key))
-                    }
+                    Some(list) => list.extract::<Integers<'_>>().and_then(|list| numbers(&list, key)),
                     None => Ok(Vec::new()),
                 };
                 (region.nodes, region.cells) = (list("nodes")?, list("cells")?);
                 if let Some(faces) = parts.get_item("faces")? {
-                    region.faces = index_rows(&faces.extract().map_err(PyErr::from)?, "faces")?;
+                    region.faces = index_rows(&faces.extract()?, "faces")?;
                 }
             }
-            Err(_) => region.nodes = numbers(&parts.extract().map_err(PyErr::from)?, "nodes")?,
+            Err(_) => region.nodes = numbers(&parts.extract()?, "nodes")?,
         }
         let beyond = |list: &[u32], count: usize| list.iter().copied().find(|&number| number as usize >= count);
         let of_faces: Vec<u32> = region.faces.iter().flatten().copied().collect();

@@ -214,11 +214,10 @@ macro_rules! in_precision {
     };
 }
 
-fn build<T: Precision>(
-    mesh: &VolumeMesh,
-    recipe: &dyn ModelRecipe,
-    keep_volume: f64,
-) -> PyResult<(Vec<Box<dyn ForceModel<T>>>, Scratch<T>)> {
+/// Models, and memory for them to compute in.
+type Built<T> = (Vec<Box<dyn ForceModel<T>>>, Scratch<T>);
+
+fn build<T: Precision>(mesh: &VolumeMesh, recipe: &dyn ModelRecipe, keep_volume: f64) -> PyResult<Built<T>> {
     let mut models = vec![T::build_model(recipe, mesh).or_raise()?];
     match mesh {
         VolumeMesh::Tet(mesh) if keep_volume != 0.0 => {

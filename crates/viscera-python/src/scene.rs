@@ -19,6 +19,9 @@ pub(crate) struct PyScene {
     scene: Scene,
 }
 
+/// A world, the steps of its duration, and what was mended in mesh files, by body.
+type Built = (Py<PyWorld>, u64, Vec<(String, String)>);
+
 fn from_json<T: serde::de::DeserializeOwned>(py: Python<'_>, value: &Bound<'_, PyAny>) -> PyResult<T> {
     let text: String = py.import("json")?.call_method1("dumps", (value,))?.extract()?;
     serde_json::from_str(&text)
@@ -89,12 +92,7 @@ impl PyScene {
     /// Builds the world: the world, the steps that its duration takes, and what was found and repaired in mesh files as (body,
     /// notice). `precision` is that of the scene, unless "single" or "double" is given; `threads` as for `World`.
     #[pyo3(signature = (*, precision=None, threads=1))]
-    fn build(
-        &self,
-        py: Python<'_>,
-        precision: Option<&str>,
-        threads: usize,
-    ) -> PyResult<(Py<PyWorld>, u64, Vec<(String, String)>)> {
+    fn build(&self, py: Python<'_>, precision: Option<&str>, threads: usize) -> PyResult<Built> {
         let precision = match precision {
             None => self.scene.check().or_raise()?.precision,
             Some(word) => crate::model::choose(
