@@ -56,7 +56,8 @@ fn haptics_in<T: Precision>(
     interrupt: &Interrupt,
 ) -> Result<(), Failure> {
     let built = open.scene.build::<T>().map_err(Failure::scene)?;
-    let Some((name, &instrument)) = built.instruments.iter().find(|(_, id)| built.world.instrument(**id).kind() != "cautery")
+    let Some((name, &instrument)) =
+        built.instruments.iter().find(|(_, id)| built.world.instrument(**id).kind() != "cautery")
     else {
         return Err(Failure::input(format!(
             "{}: the scene has no instrument that a hand could feel: add a grasper or a probe",
@@ -91,8 +92,7 @@ fn in_hand<T: Precision>(
     let origin = path.at(0.0);
     let hand = Hand::on_rails(move |time| path.at(to_and_fro(time, duration)) - origin + tremor(time));
     let workspace = Workspace { origin, ..Workspace::default() };
-    let settings =
-        ChannelSettings { workspace, extrapolation: arguments.extrapolation, ..ChannelSettings::default() };
+    let settings = ChannelSettings { workspace, extrapolation: arguments.extrapolation, ..ChannelSettings::default() };
     (EmulatedDevice::new(Rating::TOUCH, hand).trigger(1.0), settings)
 }
 
