@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use viscera_haptics::{
-    Channel, ChannelSettings, Contact, Device, DeviceError, EmulatedDevice, End, Hand, HapticThread,
-    Imperfections, ManualClock, Pose, Priority, Rating, Reading, Run, Sample, Statistics, Vector, run,
+    Channel, ChannelSettings, Contact, Device, DeviceError, EmulatedDevice, End, Hand, HapticThread, Imperfections,
+    ManualClock, Pose, Priority, Rating, Reading, Run, Sample, Statistics, Vector, run,
 };
 
 fn spring(pose: &Pose) -> Sample {
@@ -143,7 +143,11 @@ fn latency_delays_readings_and_forces_alike() {
         let (saw, felt) = ((time - 0.02).max(0.0), (time - 0.04).max(0.0));
         assert!((seen - ramp(saw)).norm() < 1e-12, "{seen:?} at {time} s");
         // Forces are steps of a millisecond.
-        assert!((device.felt().x + 50.0 * 0.02 * felt).abs() <= 50.0 * 0.02 * 1e-3 + 1e-12, "{:?} at {time} s", device.felt());
+        assert!(
+            (device.felt().x + 50.0 * 0.02 * felt).abs() <= 50.0 * 0.02 * 1e-3 + 1e-12,
+            "{:?} at {time} s",
+            device.felt()
+        );
     }
 }
 

@@ -228,6 +228,10 @@ impl Extrapolations {
             self.cells,
             brief(self.largest)
         ));
+        report = report.text(
+            "What is probed is the stiffness of tissue that has come to rest with the hand; a hand that moves feels inertia and damping as \
+             well, which is why its error is of first order here. What is learnt from the samples, along the way of the hand, has them in it.",
+        );
         for (samples, name) in [(Samples::Exact, "exact"), (Samples::Late, "late"), (Samples::Coarse, "coarse")] {
             let intervals: Vec<u32> = self.of(samples, Method::Hold).map(|row| row.interval).collect();
             let mut head = vec!["method".to_owned()];

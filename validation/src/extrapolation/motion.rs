@@ -125,10 +125,13 @@ pub(super) fn at_rest_along_a_line(size: Size, moments: u32) -> Result<Felt, Val
     let mut felt = Vec::new();
     for _ in 0..moments {
         world.step()?;
+        // What a tool reports is of the step; at rest the fixed end bears what the hand feels.
+        let mut force = Vector::ZERO;
         for &body in &bodies {
             world.settle(body, &QuasiStatic::default(), &mut Cholesky::default())?;
+            force += world.observe(body).reaction;
         }
-        felt.push(moment(&mut world, grasper));
+        felt.push(Moment { time: world.time(), tip: world.tool(grasper).pose.tip, force });
     }
     Ok(Felt { moments: felt })
 }
