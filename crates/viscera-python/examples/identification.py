@@ -47,7 +47,7 @@ for name, value in truth.items():
 # force shows; what they tell is ν. Force of the plate at 5 %: 6.2 N by a converged neo-Hookean solution of E = 14.9 kPa.
 
 # %%
-side, cells = 0.08, 8
+side, cells = 0.08, 5
 cube = viscera.TetMesh.box_grid([cells, cells, cells], [side] * 3)
 plate = cube.nodes_in("z-max")
 
