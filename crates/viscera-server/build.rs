@@ -78,7 +78,8 @@ fn build(web: &Path, out: &Path) -> Result<PathBuf, String> {
     let lock = fs::read(web.join("package-lock.json")).unwrap_or_default();
     let installed = copy.join("node_modules/.of-lock");
     if fs::read(&installed).ok().as_deref() != Some(&lock) {
-        npm(&copy, &["ci", "--no-audit", "--no-fund", "--prefer-offline"])?;
+        // Not `ci`: it wants the binaries of every platform in the lock, which registries that mirror some do not have.
+        npm(&copy, &["install", "--no-save", "--no-audit", "--no-fund", "--prefer-offline"])?;
         fs::write(&installed, &lock).map_err(unwritable)?;
     }
     npm(&copy, &["run", "build"])?;

@@ -43,9 +43,10 @@ if ! chromium; then
     fi
 fi
 
-# As the lock says, to the byte; again only when the lock has changed.
+# As the lock says, and again only when the lock has changed. Not `npm ci`: it wants the binaries of every platform in the lock, which
+# registries that mirror some do not have.
 stamp=node_modules/.of-lock
 if ! cmp -s package-lock.json "$stamp"; then
-    npm ci --no-audit --no-fund
+    npm install --no-save --no-audit --no-fund
     cp package-lock.json "$stamp"
 fi

@@ -116,7 +116,9 @@ fn the_scan_finds_modules_however_they_are_named() {
 fn the_engine_touches_no_file_socket_clock_or_thread() {
     for file in rust_files(&root().join("crates/viscera/src")) {
         let code = code(&file);
-        for way in OUTSIDE {
+        // The executor is the one that is given threads, and asks whether there are cores for them.
+        let is_executor = file.ends_with("executor.rs");
+        for way in OUTSIDE.iter().filter(|&&way| !(is_executor && way == "std::thread")) {
             assert!(!code.contains(way), "{} uses {way}", file.display());
         }
         // Brought in by halves, as `use std::{fs, …}`.
