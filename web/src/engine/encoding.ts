@@ -42,7 +42,8 @@ export function decodeMessage(bytes: Uint8Array): Message | undefined {
       body['positions'] = floats(bulk(body, 'positions'));
       for (const key of ['scalars', 'seared']) if (body[key] != null) body[key] = floats(bulk(body, key));
     }
-    for (const tool of list(value, 'instruments')) if (tool['parts'] != null) tool['parts'] = floats(bulk(tool, 'parts'));
+    for (const tool of list(value, 'instruments'))
+      if (tool['parts'] != null) tool['parts'] = floats(bulk(tool, 'parts'));
   }
   return value as unknown as Message;
 }
