@@ -182,7 +182,16 @@ fn every_built_in_scene_is_listed_in_one_line_and_can_be_copied() {
     let names: Vec<_> = outcome.out.lines().filter_map(|line| line.split_whitespace().next()).collect();
     assert_eq!(
         names,
-        ["cylinder-bend", "fibre-tubes", "liver-adaptive", "liver-inversion", "liver-pull", "liver-resection"]
+        [
+            "cylinder-bend",
+            "fibre-tubes",
+            "liver-adaptive",
+            "liver-inversion",
+            "liver-probe",
+            "liver-pull",
+            "liver-resection",
+            "liver"
+        ]
     );
     desk.viscera(&["scenes", "--copy-to", "mine"]).ends_with(0).says("mine");
     desk.viscera(&["check", "mine/liver-resection.toml"]).ends_with(0).says("instrument cautery");

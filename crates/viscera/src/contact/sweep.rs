@@ -119,7 +119,8 @@ mod tests {
     #[test]
     fn a_rod_that_stops_short_does_not_touch() {
         assert_eq!(first_touch(&CORNERS, &CORNERS, &rod(2.0, 0.11, 0.1)), None);
-        assert!(first_touch(&CORNERS, &CORNERS, &rod(2.0, 0.104, 0.1)).is_some());
+        // Nearer than the margin at the beginning, it is known before it closes.
+        assert!(first_touch(&CORNERS, &CORNERS, &rod(0.104, 0.104, 0.1)).is_some());
     }
 
     #[test]
