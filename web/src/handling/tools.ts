@@ -118,6 +118,7 @@ export class Tools {
     const instrument = this.chosen;
     if (!instrument || !this.hand || this.latched) return;
     this.hand.release(mannerOf(instrument) === 'grasp' ? 0 : 0.3 * this.clearance);
+    this.say(this.hand);
   }
 
   nudge(by: Vector3): void {

@@ -1,6 +1,7 @@
 import { existsSync } from 'node:fs';
 import { expect, test, type Page } from '@playwright/test';
 import type { PageState } from '../../src/hook';
+import { PROGRAM_PORT } from '../../playwright.config';
 import { Program } from './program';
 import { BLOCK } from './scenes';
 
@@ -77,9 +78,12 @@ for (const engine of ['native', 'wasm'] as const) {
           complaints.push(message.text());
       });
       page.on('pageerror', (error) => complaints.push(String(error)));
-      await page.goto(`/?engine=${engine}`);
+      // The program brings its own page along; WebAssembly needs no more than static files.
+      const home = engine === 'native' ? `http://127.0.0.1:${PROGRAM_PORT}/` : '/';
+      await page.goto(`${home}?engine=${engine}`);
       await expect.poll(async () => (await state(page)).frame !== undefined, { timeout: 60_000 }).toBe(true);
-      await page.evaluate(() => localStorage.setItem('viscera.hint', 'read'));
+      // It lies over the tissue on a page as small as this one.
+      await page.getByRole('button', { name: 'Understood' }).click();
     });
 
     test.afterAll(async () => {

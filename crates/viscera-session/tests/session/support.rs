@@ -124,10 +124,10 @@ impl Page {
     /// Bytes of the file that came last.
     pub(crate) fn file(&mut self) -> Vec<u8> {
         let heard = std::mem::take(&mut self.heard);
-        let files = heard
+        let mut files = heard
             .into_iter()
             .filter_map(|answer| if let Answer::File(file) = answer { Some(file.bytes.0) } else { None });
-        files.last().expect("a file came")
+        files.next_back().expect("a file came")
     }
 
     /// Brings an instrument in; gives its number.
