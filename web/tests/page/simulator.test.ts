@@ -138,8 +138,9 @@ for (const engine of ['native', 'wasm'] as const) {
       await page.mouse.move(grip.x, grip.y);
       await page.mouse.down();
       await expect.poll(() => holds(page)).toBe(1);
-      await page.mouse.move(grip.x + 20, grip.y - 60, { steps: 8 });
-      await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.01);
+      // Up, against the sag: past the place at rest, and twice as far again.
+      await page.mouse.move(grip.x + 20, grip.y - 110, { steps: 8 });
+      await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.005);
       const force = await number(page, ({ frame, chosen }) => {
         const tool = frame?.instruments.find(({ instrument }) => instrument === chosen);
         return Math.hypot(...(tool?.force ?? [0, 0, 0]));
@@ -192,6 +193,8 @@ for (const engine of ['native', 'wasm'] as const) {
       await expect(page.locator('.tape')).toContainText('agrees');
       await expect(page.locator('.tape')).toBeHidden();
       await expect(page.locator('.notice.warning, .notice.error')).toHaveCount(0);
+      // A replay ends in pause, where it ended.
+      await page.getByRole('button', { name: 'Go on (P)' }).click();
     });
 
     test('the cautery takes cells away', async () => {
