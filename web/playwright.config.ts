@@ -16,6 +16,8 @@ export default defineConfig({
   expect: { timeout: 45_000 },
   // One picture at a time: two processes that draw in software on two cores only make each other slow.
   workers: 1,
+  // Beside other work a picture was read before it was drawn.
+  retries: 1,
   reporter: [['list']],
   use: {
     baseURL: `http://127.0.0.1:${STATIC_PORT}`,
