@@ -5,10 +5,8 @@
 //! each; the tests run them small and assert.
 
 mod error;
-mod plot;
 mod references;
 mod report;
-mod setting;
 
 pub mod assembly_crossover;
 pub mod cantilevers;
@@ -17,6 +15,8 @@ pub mod fixed_beam;
 pub mod frequencies;
 pub mod multigrid;
 pub mod nearly_incompressible;
+pub mod plot;
+pub mod setting;
 pub mod step_cost;
 pub mod torture;
 pub mod truth_cube;
@@ -24,7 +24,7 @@ pub mod truth_cube;
 use std::path::PathBuf;
 
 pub use error::ValidationError;
-pub use report::Report;
+pub use report::{Block, Report, Table, brief};
 pub use setting::Element;
 
 /// How large the meshes are.

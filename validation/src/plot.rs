@@ -28,20 +28,27 @@ const COLOURS: [RGBColor; 10] = [
 
 /// Curves over two axes.
 #[derive(Clone, Debug)]
-pub(crate) struct Plot {
-    /// Name of the file.
-    pub(crate) name: &'static str,
-    pub(crate) title: String,
-    pub(crate) x: &'static str,
-    pub(crate) y: &'static str,
-    pub(crate) scale: Scale,
-    pub(crate) curves: Vec<Curve>,
+pub struct Plot {
+    /// Name of the file, without the ending.
+    pub name: &'static str,
+    /// The line above it.
+    pub title: String,
+    /// What lies along x, with its unit.
+    pub x: &'static str,
+    /// What lies along y, with its unit.
+    pub y: &'static str,
+    /// How numbers become places.
+    pub scale: Scale,
+    /// The curves, in the order of their keys.
+    pub curves: Vec<Curve>,
 }
 
 /// How numbers become places, on both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
+pub enum Scale {
+    /// In proportion.
     Linear,
+    /// By their logarithms; numbers that are not positive are left out.
     Logarithmic,
 }
 
@@ -108,23 +115,36 @@ fn short(value: f64) -> String {
 
 /// A named line through points; one that others are compared with is dashed.
 #[derive(Clone, Debug)]
-pub(crate) struct Curve {
-    pub(crate) name: String,
-    pub(crate) points: Vec<(f64, f64)>,
-    pub(crate) dashed: bool,
+pub struct Curve {
+    /// What it is called beside the plot.
+    pub name: String,
+    /// The points that it joins.
+    pub points: Vec<(f64, f64)>,
+    /// Whether others are compared with it.
+    pub dashed: bool,
 }
 
 impl Plot {
-    pub(crate) fn curve(&mut self, name: impl Into<String>, points: Vec<(f64, f64)>) {
+    /// A plot without curves.
+    pub fn new(name: &'static str, title: impl Into<String>, [x, y]: [&'static str; 2], scale: Scale) -> Self {
+        Self { name, title: title.into(), x, y, scale, curves: Vec::new() }
+    }
+
+    /// Adds a curve.
+    pub fn curve(&mut self, name: impl Into<String>, points: Vec<(f64, f64)>) {
         self.curves.push(Curve { name: name.into(), points, dashed: false });
     }
 
-    pub(crate) fn reference(&mut self, name: impl Into<String>, points: Vec<(f64, f64)>) {
+    /// Adds a curve that others are compared with.
+    pub fn reference(&mut self, name: impl Into<String>, points: Vec<(f64, f64)>) {
         self.curves.push(Curve { name: name.into(), points, dashed: true });
     }
 
     /// The drawing.
-    pub(crate) fn svg(&self) -> Result<String, ValidationError> {
+    ///
+    /// # Errors
+    /// [`ValidationError::Plot`].
+    pub fn svg(&self) -> Result<String, ValidationError> {
         let mut text = String::new();
         self.draw(&mut text)
             .map_err(|error| ValidationError::Plot { file: format!("{}.svg", self.name), why: error.to_string() })?;

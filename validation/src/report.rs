@@ -13,31 +13,52 @@ pub struct Report {
     blocks: Vec<Block>,
 }
 
+/// A part of a page.
 #[derive(Clone, Debug)]
-enum Block {
+pub enum Block {
+    /// Paragraphs; a line that begins with `##` is a heading.
     Text(String),
+    /// A table.
     Table(Table),
     /// A table in a file of its own, too long for the page.
     Data(Table),
+    /// Curves.
     Plot(Plot),
 }
 
 /// A table with a name, which is that of its CSV file.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
+pub struct Table {
     name: &'static str,
     head: Vec<String>,
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    pub(crate) fn new(name: &'static str, head: &[&str]) -> Self {
+    /// An empty table with its columns; the name is that of its CSV file.
+    pub fn new(name: &'static str, head: &[&str]) -> Self {
         Self { name, head: head.iter().map(|&title| title.to_owned()).collect(), rows: Vec::new() }
     }
 
-    pub(crate) fn push(&mut self, row: Vec<String>) {
+    /// Adds a row. Panics where it has not as many entries as there are columns.
+    pub fn push(&mut self, row: Vec<String>) {
         assert_eq!(row.len(), self.head.len(), "a row of {} has as many entries as its head", self.name);
         self.rows.push(row);
+    }
+
+    /// The name of its CSV file, without the ending.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The titles of the columns.
+    pub fn head(&self) -> &[String] {
+        &self.head
+    }
+
+    /// The rows, with as many entries as there are columns.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
     }
 
     fn markdown(&self) -> String {
@@ -46,7 +67,8 @@ impl Table {
         self.rows.iter().fold(line(&self.head) + &rule, |text, row| text + &line(row))
     }
 
-    fn csv(&self) -> String {
+    /// The table as CSV.
+    pub fn csv(&self) -> String {
         let cell = |text: &String| if text.contains(',') { format!("\"{text}\"") } else { text.clone() };
         let line = |cells: &[String]| cells.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
         self.rows.iter().fold(line(&self.head), |text, row| text + &line(row))
@@ -76,6 +98,11 @@ impl Report {
     pub(crate) fn plot(mut self, plot: Plot) -> Self {
         self.blocks.push(Block::Plot(plot));
         self
+    }
+
+    /// Its parts, from top to bottom.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 
     /// Writes `README.md` with its tables and plots to `folder`, and gives the text of the page.
@@ -119,7 +146,7 @@ fn write_aside(folder: &Path, name: &str, text: &str) -> Result<(), ValidationEr
 }
 
 /// A number to three digits.
-pub(crate) fn brief(value: f64) -> String {
+pub fn brief(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         size if (1e3..1e6).contains(&size) => format!("{value:.0}"),

@@ -12,7 +12,7 @@ use crate::ValidationError;
 use crate::references::Vector;
 
 /// The plane through `point` across axis 0, 1 or 2.
-pub(crate) fn plane(axis: usize, at: f64) -> Region {
+pub fn plane(axis: usize, at: f64) -> Region {
     let (mut point, mut normal) = ([0.0; 3], [0.0; 3]);
     point[axis] = at;
     normal[axis] = 1.0;
@@ -71,7 +71,8 @@ impl Element {
         Self { cells: Cells::Ten, nodal: true },
     ];
 
-    pub(crate) fn name(self) -> String {
+    /// Its name in tables.
+    pub fn name(self) -> String {
         let how = if self.nodal { ", integrated at the nodes" } else { "" };
         format!("{}{how}", self.cells.name())
     }
@@ -84,16 +85,21 @@ impl Element {
 }
 
 /// A body at rest, and how it came there.
-pub(crate) struct Settled {
-    pub(crate) world: World<f64>,
-    pub(crate) id: BodyId,
+pub struct Settled {
+    /// The world that it is alone in.
+    pub world: World<f64>,
+    /// Its number there.
+    pub id: BodyId,
     /// How Newton's method went; nothing if it came to rest otherwise.
-    pub(crate) report: StaticReport,
+    pub report: StaticReport,
 }
 
 impl Settled {
-    /// Brings `body` to rest under `gravity`.
-    pub(crate) fn new(body: Body, gravity: [f64; 3], settings: &QuasiStatic) -> Result<Self, ValidationError> {
+    /// Brings `body` to rest under `gravity` [m/s²].
+    ///
+    /// # Errors
+    /// [`ValidationError`] where the body makes no sense or no equilibrium is found.
+    pub fn new(body: Body, gravity: [f64; 3], settings: &QuasiStatic) -> Result<Self, ValidationError> {
         let mut world = World::new(WorldConfig { gravity, ..WorldConfig::default() })?;
         let id = world.add(body)?;
         let report = world.settle(id, settings, &mut Cholesky::default())?;
@@ -106,13 +112,13 @@ impl Settled {
     }
 
     /// Displacements from rest [m].
-    pub(crate) fn displacements(&self) -> Vec<Vector> {
+    pub fn displacements(&self) -> Vec<Vector> {
         let body = self.world.body(self.id);
         body.positions().iter().zip(body.mesh().nodes()).map(|(&x, &rest)| x - rest).collect()
     }
 
     /// Displacement [m] of the node that rests nearest to `place`.
-    pub(crate) fn displacement_at(&self, place: Vector) -> Vector {
+    pub fn displacement_at(&self, place: Vector) -> Vector {
         let body = self.world.body(self.id);
         let nodes = body.mesh().nodes();
         let away = |node: &usize| (nodes[*node] - place).squared_norm();

@@ -3,7 +3,9 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
+use viscera_reproduce::EXPERIMENTS;
 
 use crate::bench::arguments::BenchCommand;
 use crate::mesh::arguments::MeshCommand;
@@ -37,6 +39,9 @@ pub(crate) enum Command {
     /// Say what a scene holds, what it takes to run it, and what is wrong or odd with it; runs nothing.
     #[command(after_help = EXIT_CODES)]
     Check(SceneArguments),
+    /// Compute the responses of `precomputed` bodies once and keep them in files, which the scene names (`model.responses`).
+    #[command(after_help = EXIT_CODES)]
+    Precompute(PrecomputeArguments),
     /// Run a scene with a clock on every stage: where the time goes, against the time of a frame, and what would lower it.
     #[command(after_help = EXIT_CODES)]
     Profile(ProfileArguments),
@@ -49,6 +54,9 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: BenchCommand,
     },
+    /// Run the experiments of the founding papers again: one page with their figures and tables, the published values beside ours.
+    #[command(after_help = EXIT_CODES)]
+    Reproduce(ReproduceArguments),
     /// Look at meshes, convert and make them.
     #[command(after_help = EXIT_CODES)]
     Mesh {
@@ -57,8 +65,11 @@ pub(crate) enum Command {
     },
     /// List the scenes that are built in, or copy them to change them.
     Scenes(ScenesArguments),
+    /// List the tissues that a scene can name, with their numbers; or all that is known of one of them, with its sources.
+    #[command(after_help = EXIT_CODES)]
+    Tissues(TissuesArguments),
     /// Print the JSON schema of scene files, for editors.
-    Schema,
+    Schema(SchemaArguments),
 }
 
 /// Which scene, and what to change in it.
@@ -101,6 +112,15 @@ pub(crate) struct RunArguments {
     /// Say nothing but errors.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PrecomputeArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Threads to compute on; the files are the same to the last bit.
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
 }
 
 #[derive(Debug, Args)]
@@ -181,8 +201,52 @@ pub(crate) struct SweepArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ReproduceArguments {
+    /// Which experiments; all of them if none is named.
+    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(experiments()))]
+    pub(crate) names: Vec<String>,
+    /// The folder for the page, and for its tables, plots and pictures as files.
+    #[arg(long, value_name = "DIR", default_value = "out/reproduce")]
+    pub(crate) out: PathBuf,
+    /// Coarse meshes: less than a minute for all of it.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The folder, or the file, with the measured beads of the truth cube: `uniaxial_positions.csv` of Kerdok et al. (2003), which is
+    /// published without a licence and therefore not built in.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) data: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Names of the experiments, with their headings for the help.
+fn experiments() -> impl Iterator<Item = PossibleValue> {
+    EXPERIMENTS.into_iter().map(|experiment| PossibleValue::new(experiment.name).help(experiment.title))
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ScenesArguments {
     /// Write all of them, with the files that they name and the schema, into this folder.
     #[arg(long, value_name = "DIR")]
     pub(crate) copy_to: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TissuesArguments {
+    /// A tissue, such as liver; all of them by default.
+    pub(crate) name: Option<String>,
+    /// Write JSON, in SI units.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Write Markdown, as the guide has it.
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) markdown: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// Write tables of all keys in Markdown instead, as the guide has them.
+    #[arg(long)]
+    pub(crate) markdown: bool,
 }

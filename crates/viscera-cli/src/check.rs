@@ -1,6 +1,6 @@
 //! `viscera check`: what is in a scene, what it takes to run it, and what is odd about it.
 
-use viscera_scene::file::{InstrumentFile, SceneFile};
+use viscera_scene::file::SceneFile;
 use viscera_scene::{BodySummary, SceneSummary};
 
 use crate::arguments::SceneArguments;
@@ -56,17 +56,17 @@ fn warnings(file: &SceneFile, summary: &SceneSummary) -> Vec<String> {
             ));
         }
     }
-    for (name, instrument) in &file.instrument {
-        let begins = match instrument {
-            InstrumentFile::Probe { .. } => 0.0,
-            InstrumentFile::Grasper { close, .. } => close.0,
-            InstrumentFile::Cautery { on, .. } => on.map_or(0.0, |on| on.0),
-        };
-        if begins >= summary.duration {
-            warnings.push(format!(
-                "instrument `{name}` begins its work at {begins} s, when the run of {} s is over",
-                summary.duration
-            ));
+    for instrument in &summary.instruments {
+        let (name, duration) = (&instrument.name, summary.duration);
+        match instrument.active {
+            Some((begins, _)) if begins >= duration => warnings.push(format!(
+                "instrument `{name}` begins its work at {begins} s, when the run of {duration} s is over"
+            )),
+            None if instrument.path > 0.0 => warnings.push(format!(
+                "instrument `{name}` follows a path and does no work on it, as nothing says when: give `close` for a grasper, \
+                 `on` for a cautery"
+            )),
+            _ => {}
         }
     }
     warnings

@@ -8,14 +8,18 @@ mod failure;
 mod instruction_set;
 mod interrupt;
 mod mesh;
+mod precompute;
 mod profile;
+mod reproduce;
 mod run;
 mod scenes;
+mod schema;
 mod serve;
 mod stopwatch;
 mod sweep;
 mod tables;
 mod terminal;
+mod tissues;
 mod units;
 
 use std::process::ExitCode;
@@ -39,14 +43,17 @@ fn carry_out(command: Option<Command>) -> Result<(), Failure> {
     match command {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Precompute(arguments)) => precompute::precompute(&arguments),
         Some(Command::Profile(arguments)) => profile::profile(&arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(&arguments),
         Some(Command::Bench { command }) => bench::carry_out(&command),
+        Some(Command::Reproduce(arguments)) => reproduce::reproduce(&arguments),
         Some(Command::Mesh { command }) => mesh::carry_out(&command),
         Some(Command::Scenes(arguments)) => scenes::scenes(&arguments),
+        Some(Command::Tissues(arguments)) => tissues::tissues(&arguments),
         Some(Command::Serve(arguments)) => serve::serve(&arguments),
-        Some(Command::Schema) => {
-            terminal::say(&viscera_scene::schema_text());
+        Some(Command::Schema(arguments)) => {
+            schema::schema(&arguments);
             Ok(())
         }
         // What most people want who type the name alone.

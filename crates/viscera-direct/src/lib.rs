@@ -59,7 +59,7 @@ impl LinearSolver for Cholesky {
         Ok(())
     }
 
-    fn solve(&mut self, _system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError> {
+    fn solve(&self, _system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError> {
         let numeric = self.numeric.as_ref().ok_or(SolverError::NotPositiveDefinite)?;
         let mut numbers: Vec<f64> = right.iter().flat_map(|v| v.to_array()).collect();
         let size = numbers.len();

@@ -22,7 +22,7 @@ damping = 5
 # its workers: `viscera.sweep(scene, values, client=Client("tcp://…"))`. A worker may die; the table is the same.
 
 # %%
-values = {
+values: dict[str, list] = {
     "body.strip.law.young": ["4 kPa", "6 kPa", "8 kPa"],
     "body.strip.mesh.size": [["4 cm", "16 cm", "1 cm"], ["4 cm", "16 cm", "2 cm"]],
 }

@@ -1,23 +1,30 @@
-//! A world that Python described, as a scene file: its meshes beside it, its laws, models, regions and loads in the scene's words.
+//! A world that Python described, as a scene file: its meshes beside it, its laws, models, regions, loads and instruments in the scene's
+//! words. What a scene has no words for is refused: the file runs to the same bits.
+
+mod fibre;
+mod instrument;
 
 use std::path::Path;
 
 use indexmap::IndexMap;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use viscera::body::{Load, LoosePieces};
+use viscera::body::{Load, LoosePieces, NodeMotion};
 use viscera::curve::Curve;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
-use viscera::material::LawKind;
-use viscera::math::Vec3;
+use viscera::dynamics::quasi_static::QuasiStatic;
+use viscera::material::{Lame, LawKind};
+use viscera::math::{Scalar, Vec3};
 use viscera::mesh::{Region, VolumeMesh};
 use viscera::solver::Stop;
-use viscera::world::{Integrator, Substep, WorldConfig};
+use viscera::world::{Attachment, BodyId, InstrumentId, Integrator, Substep, World};
+use viscera_io::read_volume;
 use viscera_io::write::{write_hex_msh, write_tet_msh};
 
 use crate::body::Description;
 use crate::error::OrRaise;
 use crate::model::AnyModel;
+use crate::world::{PyWorld, in_world};
 
 /// A JSON object from pairs, without those that are not given.
 macro_rules! object {
@@ -30,43 +37,119 @@ macro_rules! object {
     }};
 }
 
+use object;
+
 type Json = serde_json::Value;
 
 fn refuse(why: impl Into<String>) -> PyErr {
     PyValueError::new_err(why.into())
 }
 
-/// The scene as JSON; writes the meshes of `bodies` into `folder` as MSH.
-pub(crate) fn scene(
-    config: &WorldConfig,
-    precision: &str,
-    duration: f64,
-    bodies: &IndexMap<String, Description>,
-    folder: &Path,
-) -> PyResult<Json> {
-    let mut described = serde_json::Map::new();
-    for (name, body) in bodies {
-        let file = format!("{name}.msh");
-        match &*body.mesh {
-            VolumeMesh::Tet(mesh) => write_tet_msh(folder.join(&file), mesh),
-            VolumeMesh::Hex(mesh) => write_hex_msh(folder.join(&file), mesh),
-        }
-        .or_raise()?;
-        described.insert(name.clone(), self::body(body, &file)?);
+/// The scene as JSON; writes the meshes of its bodies into `folder` as MSH.
+pub(crate) fn scene(world: &PyWorld, duration: f64, folder: &Path) -> PyResult<Json> {
+    if !in_world!(&world.world, inner => is_at_its_beginning(inner)) {
+        return Err(refuse(
+            "a scene begins with bodies at rest, whole, and tools on their paths; this world has moved or was changed. Write it before",
+        ));
     }
+    let bodies = described(world)?;
+    let names: Vec<&String> = bodies.keys().collect();
+    if !world.attachments.is_sorted_by_key(|attachment| attachment.body) {
+        return Err(refuse(
+            "a scene attaches body by body, in their order: attach in the order in which bodies were added",
+        ));
+    }
+    let mut written = serde_json::Map::new();
+    for (number, (name, body)) in bodies.iter().enumerate() {
+        let file = format!("{name}.msh");
+        write_mesh(&body.mesh, &folder.join(&file))?;
+        let own = world.attachments.iter().filter(|attachment| attachment.body == BodyId(number));
+        written.insert((*name).clone(), self::body(body, &file, &attached(own, &names))?);
+    }
+    let mut instruments = serde_json::Map::new();
+    let present: Vec<InstrumentId> = in_world!(&world.world, inner => inner.instrument_ids().collect());
+    for id in present {
+        let (name, tool) = &world.instruments[id.0];
+        let tool = tool.as_ref().ok_or_else(built_from_a_scene)?;
+        if instruments.insert(name.clone(), instrument::instrument(name, tool)?).is_some() {
+            return Err(refuse(format!("two instruments are named `{name}`; names in a scene differ")));
+        }
+    }
+    let config = in_world!(&world.world, inner => inner.config().clone());
     let (integrator, substep) = integrator(config.integrator);
     Ok(object! {
         "gravity": Json::from(config.gravity.to_vec()),
         "duration": Json::from(duration),
         "step": Json::from(config.step),
         "substep": substep,
-        "precision": Json::from(precision),
+        "precision": Json::from(world.precision()),
         "integrator": integrator,
-        "body": Json::Object(described),
+        "body": Json::Object(written),
+        "instrument": Json::Object(instruments),
     })
 }
 
-fn body(body: &Description, file: &str) -> PyResult<Json> {
+fn built_from_a_scene() -> PyErr {
+    refuse("the world was built from a scene: write that, with `Scene.to_toml`")
+}
+
+/// Bodies by name.
+fn described(world: &PyWorld) -> PyResult<IndexMap<String, &Description>> {
+    let mut bodies = IndexMap::new();
+    for body in &world.descriptions {
+        let body = body.as_ref().ok_or_else(built_from_a_scene)?;
+        if bodies.insert(body.name.clone(), body).is_some() {
+            return Err(refuse(format!("two bodies are named `{}`; names in a scene differ", body.name)));
+        }
+    }
+    Ok(bodies)
+}
+
+/// Whether nothing has happened that a scene cannot say. Nodes that are moved along a way stand where it begins.
+fn is_at_its_beginning<T: Scalar>(world: &World<T>) -> bool {
+    let is_whole = |id: BodyId| {
+        let (body, rest) = (world.body(id), world.body(id).mesh().nodes());
+        let state = body.state();
+        let at_rest = |node: usize| {
+            state.velocities[node] == Vec3::ZERO
+                && (state.motions[node] != NodeMotion::Free || state.positions[node] == rest[node].cast())
+        };
+        state.removed_count == 0 && (0..rest.len()).all(at_rest)
+    };
+    world.steps() == 0
+        && world.body_ids().all(is_whole)
+        && world.instrument_ids().all(|id| world.tool(id).hand.is_none())
+}
+
+/// Writes a mesh, and sees that it comes back as it is: reading repairs, and may leave out nodes of no cell.
+fn write_mesh(mesh: &VolumeMesh, path: &Path) -> PyResult<()> {
+    match mesh {
+        VolumeMesh::Tet(mesh) => write_tet_msh(path, mesh),
+        VolumeMesh::Hex(mesh) => write_hex_msh(path, mesh),
+    }
+    .or_raise()?;
+    let back = read_volume(path, 1.0).or_raise()?.mesh;
+    let cells = |mesh: &VolumeMesh| match mesh {
+        VolumeMesh::Tet(mesh) => mesh.cells.concat(),
+        VolumeMesh::Hex(mesh) => mesh.cells.concat(),
+    };
+    if back.nodes() == mesh.nodes() && cells(&back) == cells(mesh) {
+        Ok(())
+    } else {
+        Err(refuse(
+            "a mesh that is read is repaired, and this one needs it: describe the body with what `checked` gives",
+        ))
+    }
+}
+
+fn attached<'a>(attachments: impl Iterator<Item = &'a Attachment>, names: &[&String]) -> Vec<Json> {
+    let one = |attachment: &Attachment| {
+        object! { "region": region(&attachment.region), "to": Json::from(names[attachment.to.0].as_str()) }
+    };
+    attachments.map(one).collect()
+}
+
+fn body(body: &Description, file: &str, attached: &[Json]) -> PyResult<Json> {
     let &[density] = &body.densities[..] else {
         return Err(refuse(
             "a scene file has one density for a body, and `part`s with others; this one has one for each cell",
@@ -77,7 +160,7 @@ fn body(body: &Description, file: &str) -> PyResult<Json> {
         "mesh": object! { "file": Json::from(file) },
         "density": Json::from(density),
         "law": law(&body.model)?,
-        "model": model(&body.model, body.keep_volume),
+        "model": model(&body.model, body.keep_volume)?,
         "damping": Json::from(body.damping),
         "stiffness-damping": (body.stiffness_damping != 0.0).then(|| Json::from(body.stiffness_damping)),
         "fix": (!body.fixed.is_empty()).then(|| each(&body.fixed)),
@@ -94,6 +177,7 @@ fn body(body: &Description, file: &str) -> PyResult<Json> {
             "region": region(at),
             "displacement": curve(way, vector),
         }).collect::<Vec<_>>()),
+        "attach": Json::from(attached.to_vec()),
         "load": Json::from(body.loads.iter().map(load).collect::<Vec<_>>()),
     })
 }
@@ -146,8 +230,7 @@ fn region(region: &Region) -> Json {
     }
 }
 
-/// The law, if it is the same everywhere. Fibres stand in the file by their λ and μ, of which only κ_a = (λL − λ)/2 + μL − μ acts:
-/// μL = μ then, and λL is what κ_a asks for.
+/// The law, if it is the same everywhere.
 fn law(model: &AnyModel) -> PyResult<Json> {
     let recipe = model.recipe();
     let tissue = recipe.tissue();
@@ -164,13 +247,8 @@ fn law(model: &AnyModel) -> PyResult<Json> {
         isotropic => (isotropic.name(), false),
     };
     let rest = tissue.at_rest(0);
-    let fibre = has_fibres.then(|| {
-        object! {
-            "direction": vector(rest.direction),
-            "lambda": Json::from(rest.lame.lambda + 2.0 * rest.fibre_stiffness),
-            "mu": Json::from(rest.lame.mu),
-        }
-    });
+    let matrix = Lame { lambda: values[0], mu: values[1] };
+    let fibre = has_fibres.then(|| fibre::fibre(matrix, rest.direction, rest.fibre_stiffness)).transpose()?;
     Ok(object! {
         "kind": Json::from(name),
         "lambda": Json::from(values[0]),
@@ -179,7 +257,12 @@ fn law(model: &AnyModel) -> PyResult<Json> {
     })
 }
 
-fn model(model: &AnyModel, keep_volume: f64) -> Json {
+fn model(model: &AnyModel, keep_volume: f64) -> PyResult<Json> {
+    if matches!(model, AnyModel::TotalLagrangian(_, false)) {
+        return Err(refuse(
+            "a scene has no words for `gauss` and `plain`: it takes 2 points along an edge, and the faster form",
+        ));
+    }
     let word = |word: &Option<String>| word.clone().map(Json::from);
     let number = |number: Option<f64>| number.map(Json::from);
     let none = [const { None }; 4];
@@ -189,7 +272,11 @@ fn model(model: &AnyModel, keep_volume: f64) -> Json {
         AnyModel::Corotational(_, words) => (None, None, words),
         _ => (None, None, &none),
     };
-    object! {
+    let dynamic = match model {
+        AnyModel::Hybrid(_, dynamic) => dynamic.as_ref().map(region),
+        _ => None,
+    };
+    Ok(object! {
         "kind": Json::from(model.recipe().kind().info().name),
         "keep-volume": (keep_volume != 0.0).then(|| Json::from(keep_volume)),
         "adaptive": number(adaptive),
@@ -198,7 +285,8 @@ fn model(model: &AnyModel, keep_volume: f64) -> Json {
         "strain-displacement": word(&words[1]),
         "volume": word(&words[2]),
         "tangent": word(&words[3]),
-    }
+        "dynamic": dynamic,
+    })
 }
 
 /// The integrator, and the sub-step where it has one.
@@ -207,7 +295,14 @@ fn integrator(integrator: Integrator) -> (Json, Json) {
         Integrator::Explicit(Substep::Automatic) => (object! { "kind": Json::from("explicit") }, "auto".into()),
         Integrator::Explicit(Substep::Fixed(time)) => (object! { "kind": Json::from("explicit") }, time.into()),
         Integrator::Implicit(settings) => (implicit(settings), "auto".into()),
+        Integrator::QuasiStatic(settings) => (quasi_static(settings), "auto".into()),
     }
+}
+
+fn quasi_static(settings: QuasiStatic) -> Json {
+    let full = object! { "tolerance": Json::from(settings.tolerance), "iterations": Json::from(settings.iterations) };
+    let newton = if settings.small_strain { Json::from("linearised") } else { full };
+    object! { "kind": Json::from("quasi-static"), "newton": newton }
 }
 
 fn implicit(settings: Implicit) -> Json {

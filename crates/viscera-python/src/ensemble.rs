@@ -34,7 +34,7 @@ impl PyThreads {
     fn step(&self, py: Python<'_>, worlds: Vec<Py<PyWorld>>, count: u64) -> PyResult<Vec<Option<String>>> {
         let mut borrowed = Vec::with_capacity(worlds.len());
         for world in &worlds {
-            borrowed.push(world.bind(py).try_borrow_mut()?);
+            borrowed.push(PyWorld::change(world.bind(py))?);
         }
         let mut inner: Vec<&mut AnyWorld> = borrowed.iter_mut().map(|world| &mut world.world).collect();
         let outcomes = py.detach(|| {

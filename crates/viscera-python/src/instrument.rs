@@ -131,18 +131,37 @@ impl PyCautery {
     }
 }
 
-/// Adds what was described to a world.
-pub(crate) fn add(world: &mut AnyWorld, instrument: &Bound<'_, PyAny>) -> PyResult<InstrumentId> {
-    if let Ok(probe) = instrument.cast::<PyProbe>() {
-        return in_world!(world, world => world.add_instrument(probe.get().0.clone())).or_raise();
+/// What was said about an instrument.
+#[derive(Clone)]
+pub(crate) enum AnyInstrument {
+    Probe(Probe),
+    Grasper(Grasper),
+    Cautery(Cautery),
+}
+
+impl AnyInstrument {
+    pub(crate) fn of(instrument: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(probe) = instrument.cast::<PyProbe>() {
+            return Ok(Self::Probe(probe.get().0.clone()));
+        }
+        if let Ok(grasper) = instrument.cast::<PyGrasper>() {
+            return Ok(Self::Grasper(grasper.get().0.clone()));
+        }
+        if let Ok(cautery) = instrument.cast::<PyCautery>() {
+            return Ok(Self::Cautery(cautery.get().0.clone()));
+        }
+        Err(PyTypeError::new_err("an instrument is a Probe, a Grasper or a Cautery"))
     }
-    if let Ok(grasper) = instrument.cast::<PyGrasper>() {
-        return in_world!(world, world => world.add_instrument(grasper.get().0.clone())).or_raise();
+
+    /// Adds it to a world.
+    pub(crate) fn add(&self, world: &mut AnyWorld) -> PyResult<InstrumentId> {
+        in_world!(world, world => match self.clone() {
+            Self::Probe(probe) => world.add_instrument(probe),
+            Self::Grasper(grasper) => world.add_instrument(grasper),
+            Self::Cautery(cautery) => world.add_instrument(cautery),
+        })
+        .or_raise()
     }
-    if let Ok(cautery) = instrument.cast::<PyCautery>() {
-        return in_world!(world, world => world.add_instrument(cautery.get().0.clone())).or_raise();
-    }
-    Err(PyTypeError::new_err("an instrument is a Probe, a Grasper or a Cautery"))
 }
 
 /// A capsule: its two ends and its radius [m].
@@ -157,7 +176,7 @@ pub(crate) struct PyTool {
 
 impl PyTool {
     fn state(&self, py: Python<'_>) -> PyResult<ToolState> {
-        let world = self.world.borrow(py);
+        let world = self.world.try_borrow(py)?;
         let found = in_world!(&world.world, world => {
             world.instrument_ids().any(|id| id == self.id).then(|| *world.tool(self.id))
         });
@@ -169,15 +188,15 @@ impl PyTool {
 impl PyTool {
     /// The name under which it was added.
     #[getter]
-    fn name(&self, py: Python<'_>) -> String {
-        self.world.borrow(py).instrument_names[self.id.0].clone()
+    fn name(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.world.try_borrow(py)?.instruments[self.id.0].0.clone())
     }
 
     /// "probe", "grasper", "cautery".
     #[getter]
     fn kind(&self, py: Python<'_>) -> PyResult<&'static str> {
         self.state(py)?;
-        Ok(in_world!(&self.world.borrow(py).world, world => world.instrument(self.id).kind()))
+        Ok(in_world!(&self.world.try_borrow(py)?.world, world => world.instrument(self.id).kind()))
     }
 
     /// Leads the tool by hand from now on, over its path: at the end of the next step its tip is at `tip` [m], pointing along
@@ -194,17 +213,18 @@ impl PyTool {
     ) -> PyResult<()> {
         let direction = direction.unwrap_or([0.0, -1.0, 0.0]).into();
         let input = ToolInput { pose: ToolPose { tip: tip.into(), direction, roll }, trigger };
-        in_world!(&mut self.world.borrow_mut(py).world, world => world.set_tool(self.id, input)).or_raise()
+        in_world!(&mut self.world.try_borrow_mut(py)?.world, world => world.set_tool(self.id, input)).or_raise()
     }
 
     /// Lets it follow its path again.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
-        in_world!(&mut self.world.borrow_mut(py).world, world => world.release_tool(self.id)).or_raise()
+        in_world!(&mut self.world.try_borrow_mut(py)?.world, world => world.release_tool(self.id)).or_raise()
     }
 
     /// Takes it out of the world; it lets go of what it holds.
     fn remove(&self, py: Python<'_>) -> PyResult<()> {
-        in_world!(&mut self.world.borrow_mut(py).world, world => world.remove_instrument(self.id)).or_raise()
+        in_world!(&mut PyWorld::change(self.world.bind(py))?.world, world => world.remove_instrument(self.id))
+            .or_raise()
     }
 
     /// Where its tip is [m].
@@ -265,14 +285,14 @@ impl PyTool {
     #[getter]
     fn capsules(&self, py: Python<'_>) -> PyResult<Vec<Ends>> {
         self.state(py)?;
-        let capsules = in_world!(&self.world.borrow(py).world, world => world.tool_capsules(self.id).to_vec());
+        let capsules = in_world!(&self.world.try_borrow(py)?.world, world => world.tool_capsules(self.id).to_vec());
         Ok(capsules.into_iter().map(|part| (part.from.to_array(), part.to.to_array(), part.radius)).collect())
     }
 
     /// Measures the instrument now.
     fn observe(&self, py: Python<'_>) -> PyResult<PyInstrumentObservables> {
         self.state(py)?;
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.world.try_borrow_mut(py)?;
         Ok(PyInstrumentObservables(in_world!(&mut world.world, world => world.observe_instrument(self.id))))
     }
 

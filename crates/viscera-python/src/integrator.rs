@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
+use viscera::dynamics::quasi_static::QuasiStatic;
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep};
 
@@ -31,6 +32,25 @@ impl PyExplicit {
 /// One step that the forces at its end decide: stiff tissue and small cells bear long steps.
 #[pyclass(frozen, name = "Implicit", module = "viscera")]
 pub(crate) struct PyImplicit(Implicit);
+
+/// From one equilibrium to the next: loads and prescribed motions go on with time, without inertia or damping.
+#[pyclass(frozen, name = "QuasiStatic", module = "viscera")]
+pub(crate) struct PyQuasiStatic(QuasiStatic);
+
+#[pymethods]
+impl PyQuasiStatic {
+    /// `tolerance`: residual relative to loads and reactions; `iterations`: the most for a share of a step's load; `small_strain`: one
+    /// linear solve from rest in each step.
+    #[new]
+    #[pyo3(signature = (*, tolerance=1e-10, iterations=30, small_strain=false))]
+    fn new(tolerance: f64, iterations: usize, small_strain: bool) -> Self {
+        Self(QuasiStatic { tolerance, iterations, small_strain, ..QuasiStatic::default() })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<{:?}>", self.0)
+    }
+}
 
 fn scheme(name: &str, beta: f64, gamma: f64) -> PyResult<Scheme> {
     let known = [
@@ -100,8 +120,11 @@ impl PyImplicit {
 /// The integrator that is meant; explicit where none is given.
 pub(crate) fn integrator(given: Option<&Bound<'_, PyAny>>) -> PyResult<Integrator> {
     let Some(given) = given else { return Ok(Integrator::default()) };
-    match given.cast::<PyExplicit>() {
-        Ok(explicit) => Ok(Integrator::Explicit(explicit.get().0)),
+    if let Ok(explicit) = given.cast::<PyExplicit>() {
+        return Ok(Integrator::Explicit(explicit.get().0));
+    }
+    match given.cast::<PyQuasiStatic>() {
+        Ok(quasi_static) => Ok(Integrator::QuasiStatic(quasi_static.get().0)),
         Err(_) => Ok(Integrator::Implicit(given.cast::<PyImplicit>()?.get().0)),
     }
 }

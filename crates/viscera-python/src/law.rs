@@ -1,9 +1,10 @@
 //! Laws, with their parameters, and what they make of a deformation.
 
 use numpy::{PyArray1, PyArray3};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue};
+use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue, TissuePreset};
 use viscera::math::Mat3;
 
 use crate::arrays::{Numbers, list_array, matrices, matrix_array};
@@ -267,6 +268,19 @@ fibred! {
     TransverseStVenantKirchhoff, "St Venant–Kirchhoff, stiffer (or softer) along one direction.";
 }
 
+/// Every tissue that scenes can name, with its numbers and their sources, as JSON in SI; for one with fibres λ and μ of the matrix
+/// between them, and how many times larger these are along them.
+#[pyfunction]
+pub(crate) fn tissue_presets() -> PyResult<String> {
+    let entries = TissuePreset::ALL.iter().map(|preset| {
+        let fibred = preset.matrix_and_factor().or_raise()?;
+        let mut entry = serde_json::to_value(preset).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        entry["fibred"] = fibred.map(|(matrix, factor)| vec![matrix.lambda, matrix.mu, factor]).into();
+        Ok(entry)
+    });
+    Ok(serde_json::Value::Array(entries.collect::<PyResult<_>>()?).to_string())
+}
+
 /// A law, the same in every cell or one for each.
 #[pyclass(frozen, name = "Tissue", module = "viscera")]
 pub(crate) struct PyTissue(pub(crate) Tissue);
@@ -349,5 +363,6 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<StableNeoHookean>()?;
     module.add_class::<TransverseLinear>()?;
     module.add_class::<TransverseStVenantKirchhoff>()?;
+    module.add_function(wrap_pyfunction!(tissue_presets, module)?)?;
     module.add_class::<PyTissue>()
 }

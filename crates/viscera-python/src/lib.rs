@@ -19,6 +19,7 @@ mod report;
 mod scene;
 mod simulated;
 mod surface;
+mod view;
 mod world;
 
 use pyo3::prelude::*;
@@ -41,6 +42,7 @@ fn _viscera(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<body::PyBody>()?;
     module.add_class::<integrator::PyExplicit>()?;
     module.add_class::<integrator::PyImplicit>()?;
+    module.add_class::<integrator::PyQuasiStatic>()?;
     module.add_class::<world::PyWorld>()?;
     module.add_class::<world::PySnapshot>()?;
     module.add_class::<world::PyAttachment>()?;

@@ -319,6 +319,13 @@ impl PyTetMesh {
         mesh_object(py, VolumeMesh::from(mesh))
     }
 
+    /// An upright trunk of `height` [m] in tetrahedra of about `edge` [m], with abdomen, thorax, diaphragm and ribs as regions.
+    #[staticmethod]
+    fn trunk(py: Python<'_>, height: f64, edge: f64) -> PyResult<Py<PyAny>> {
+        let mesh = py.detach(|| TetMesh::trunk(height, edge)).or_raise()?;
+        mesh_object(py, VolumeMesh::from(mesh))
+    }
+
     /// A closed surface filled with tetrahedra of `edge` [m].
     #[staticmethod]
     fn from_surface(py: Python<'_>, surface: &PySurfaceMesh, edge: f64) -> PyResult<Py<PyAny>> {

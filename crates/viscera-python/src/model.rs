@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use viscera::math::{Mat3, Scalar, Vec3};
-use viscera::mesh::{GaussRule, VolumeMesh};
+use viscera::mesh::{GaussRule, Region, VolumeMesh};
 use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement, Tangent};
 use viscera::model::{BlockSink, ForceModel, ModelRecipe, Precision, Scratch};
 
@@ -14,6 +14,7 @@ use crate::arrays::{Numbers, NumpyScalar, list_array, matrix_array, vector_array
 use crate::error::OrRaise;
 use crate::law::tissue;
 use crate::mesh::PyVolumeMesh;
+use crate::region::PyRegion;
 
 /// How a law and a mesh become forces. Made by its subclasses, which are named as in the engine.
 #[pyclass(frozen, subclass, name = "Model", module = "viscera")]
@@ -24,10 +25,15 @@ pub(crate) struct PyModel(pub(crate) AnyModel);
 pub(crate) enum AnyModel {
     LinearTensorMass(viscera::model::LinearTensorMass),
     TensorMass(viscera::model::TensorMass, Option<f64>),
-    TotalLagrangian(viscera::model::TotalLagrangian),
+    /// With whether it is the one that a scene names.
+    TotalLagrangian(viscera::model::TotalLagrangian, bool),
     NodallyIntegrated(viscera::model::NodallyIntegrated, Option<f64>),
     Corotational(viscera::model::Corotational, [Option<String>; 4]),
     StiffnessWarping(viscera::model::StiffnessWarping),
+    MassSpring(viscera::model::MassSpring),
+    ShapeMemory(viscera::model::ShapeMemory),
+    Precomputed(viscera::model::Precomputed),
+    Hybrid(viscera::model::Hybrid, Option<Region>),
 }
 
 impl AnyModel {
@@ -35,10 +41,14 @@ impl AnyModel {
         match self.clone() {
             Self::LinearTensorMass(recipe) => Box::new(recipe),
             Self::TensorMass(recipe, _) => Box::new(recipe),
-            Self::TotalLagrangian(recipe) => Box::new(recipe),
+            Self::TotalLagrangian(recipe, _) => Box::new(recipe),
             Self::NodallyIntegrated(recipe, _) => Box::new(recipe),
             Self::Corotational(recipe, _) => Box::new(recipe),
             Self::StiffnessWarping(recipe) => Box::new(recipe),
+            Self::MassSpring(recipe) => Box::new(recipe),
+            Self::ShapeMemory(recipe) => Box::new(recipe),
+            Self::Precomputed(recipe) => Box::new(recipe),
+            Self::Hybrid(recipe, _) => Box::new(recipe),
         }
     }
 }
@@ -89,7 +99,27 @@ macro_rules! plain_model {
 
 plain_model! {
     LinearTensorMass, "Precomputed tensors of the linear law; tetrahedra.";
+    Precomputed, "Responses of the linear law found beforehand (Cotin et al. 1999); rests at every step and cannot be cut.";
     StiffnessWarping, "The linear law turned at each node (Müller et al. 2002); tetrahedra. For comparison: its forces do not balance.";
+    MassSpring, "Springs along the edges of the cells (van Gelder 1998). For comparison: Poisson's ratio is 1/4, and what is folded stays folded.";
+    ShapeMemory, "Nodes that return to their place among their neighbours (Promayon et al. 1996); no law of matter.";
+}
+
+/// One region moves and can be cut, the rest follows by the law at rest, pre-computed (Cotin et al. 2000); every law.
+#[pyclass(frozen, extends = PyModel, module = "viscera")]
+pub(crate) struct Hybrid;
+
+#[pymethods]
+impl Hybrid {
+    /// A model of `tissue`; every cell with a corner in the region `dynamic` moves, or all of it.
+    #[new]
+    #[pyo3(signature = (tissue, *, dynamic=None))]
+    fn new(tissue: &Bound<'_, PyAny>, dynamic: Option<&Bound<'_, PyRegion>>) -> PyResult<PyClassInitializer<Self>> {
+        let recipe = viscera::model::Hybrid::new(self::tissue(tissue)?);
+        let dynamic = dynamic.map(|region| region.get().0.clone());
+        let recipe = dynamic.clone().map_or(recipe.clone(), |region| recipe.dynamic(region));
+        Ok(PyClassInitializer::from(PyModel(AnyModel::Hybrid(recipe, dynamic))).add_subclass(Self))
+    }
 }
 
 /// Precomputed tensors of the non-linear law; tetrahedra.
@@ -126,7 +156,8 @@ impl TotalLagrangian {
         };
         let recipe = viscera::model::TotalLagrangian::new(self::tissue(tissue)?).gauss(rule);
         let recipe = if plain { recipe.plain() } else { recipe };
-        Ok(PyClassInitializer::from(PyModel(AnyModel::TotalLagrangian(recipe))).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyModel(AnyModel::TotalLagrangian(recipe, gauss == 2 && !plain)))
+            .add_subclass(Self))
     }
 }
 
@@ -364,5 +395,9 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<NodallyIntegrated>()?;
     module.add_class::<Corotational>()?;
     module.add_class::<StiffnessWarping>()?;
+    module.add_class::<MassSpring>()?;
+    module.add_class::<ShapeMemory>()?;
+    module.add_class::<Precomputed>()?;
+    module.add_class::<Hybrid>()?;
     module.add_class::<PyForceModel>()
 }

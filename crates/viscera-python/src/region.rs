@@ -89,6 +89,14 @@ impl PyRegion {
         Ok(Self(Region::Union(vec![self.0.clone(), region(other)?])))
     }
 
+    fn __ror__(&self, other: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(Region::Union(vec![region(other)?, self.0.clone()])))
+    }
+
+    fn __rand__(&self, other: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(Region::Intersection(vec![region(other)?, self.0.clone()])))
+    }
+
     fn __and__(&self, other: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self(Region::Intersection(vec![self.0.clone(), region(other)?])))
     }

@@ -119,6 +119,8 @@ getters!(PyBodyObservables {
     volume: f64 = |of| of.volume;
     /// (V − V0)/V0 of what is left.
     volume_variation: f64 = |of| of.volume_variation;
+    /// Largest |V − V0|/V0 of the volumes that are kept exactly; 0 without any.
+    volume_error: f64 = |of| of.volume_error;
     /// Largest distance of a node from its place at rest [m].
     max_displacement: f64 = |of| of.max_displacement;
     /// Force by which fixed and prescribed nodes are held [N].
@@ -135,6 +137,8 @@ getters!(PyBodyObservables {
     nonlinear_nodes: usize = |of| of.nonlinear_nodes;
     /// Whether the kinetic energy has died down to a hundred-millionth of the elastic energy.
     at_rest: bool = |of| of.at_rest;
+    /// How much the reaction of a pre-computed part changed in the last step, over its size; None for a body without one.
+    interface_residual: Option<f64> = |of| of.interface_residual;
 });
 
 /// Numbers about an instrument.

@@ -19,12 +19,16 @@ use crate::error::OrRaise;
 use crate::mesh::mesh_object;
 use crate::model::{BlockArrays, Blocks, choose};
 use crate::report::{PyBodyObservables, PyStaticReport};
+use crate::view::{Of, view};
 use crate::world::{PyWorld, in_world};
+
+/// Corners of triangles, and whether a cut has laid each open.
+type Surface<'py> = (Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<bool>>);
 
 /// A body in a world.
 ///
 /// Arrays of its state are copies, in the world's precision (float32 or float64), and keep their shape whatever is cut: nodes
-/// and cells are never renumbered. Fields of cells that are removed are NaN; nodes that have lost all cells stay where they were.
+/// and cells are never renumbered. `live_positions` follow the body, `view_positions` and `view_velocities` look into the engine's memory. Fields of cells that are removed are NaN; nodes that have lost all cells stay where they were.
 #[pyclass(frozen, name = "SimulatedBody", module = "viscera")]
 pub(crate) struct PySimulatedBody {
     pub(crate) world: Py<PyWorld>,
@@ -61,8 +65,8 @@ impl PySimulatedBody {
         py: Python<'py>,
         single: impl Fn(&SimulatedBody<f32>, usize) -> Mat3<f64>,
         double: impl Fn(&SimulatedBody<f64>, usize) -> Mat3<f64>,
-    ) -> Bound<'py, PyArray3<f64>> {
-        let world = self.world.borrow(py);
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let world = self.read(py)?;
         let matrices = match &world.world {
             crate::world::AnyWorld::Single(world) => {
                 let body = world.body(self.id);
@@ -73,7 +77,22 @@ impl PySimulatedBody {
                 each_cell(body, |cell| double(body, cell), nan)
             }
         };
-        matrix_array(py, &matrices)
+        Ok(matrix_array(py, &matrices))
+    }
+
+    /// The world, to be read. Raises RuntimeError where another thread steps it.
+    fn read<'a>(&'a self, py: Python<'a>) -> PyResult<PyRef<'a, PyWorld>> {
+        Ok(self.world.try_borrow(py)?)
+    }
+
+    /// The world, for what computes and leaves its state as it is.
+    fn compute<'a>(&'a self, py: Python<'a>) -> PyResult<PyRefMut<'a, PyWorld>> {
+        Ok(self.world.try_borrow_mut(py)?)
+    }
+
+    /// The world, to be changed.
+    fn change<'a>(&'a self, py: Python<'a>) -> PyResult<PyRefMut<'a, PyWorld>> {
+        PyWorld::change(self.world.bind(py))
     }
 }
 
@@ -99,8 +118,8 @@ fn cast<T: NumpyScalar>(vectors: &[Vec3<f64>]) -> Vec<Vec3<T>> {
 impl PySimulatedBody {
     /// The name by which messages call it.
     #[getter]
-    fn name(&self, py: Python<'_>) -> String {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).name().to_owned())
+    fn name(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).name().to_owned()))
     }
 
     /// The world.
@@ -117,26 +136,26 @@ impl PySimulatedBody {
 
     /// Name of the force model.
     #[getter]
-    fn model(&self, py: Python<'_>) -> &'static str {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).model().info().name)
+    fn model(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).model().info().name))
     }
 
     /// Name of the law.
     #[getter]
-    fn law(&self, py: Python<'_>) -> &'static str {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).law())
+    fn law(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).law()))
     }
 
     /// Positions of the nodes [m]; shape (n, 3). Setting them moves the nodes in the directions that are free.
     #[getter]
-    fn positions<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        in_world!(&self.world.borrow(py).world, world => vector_array(py, world.body(self.id).positions()).into_any())
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(in_world!(&self.read(py)?.world, world => vector_array(py, world.body(self.id).positions()).into_any()))
     }
 
     #[setter]
     fn set_positions(&self, py: Python<'_>, positions: Numbers<'_>) -> PyResult<()> {
         let places = vectors_of(&positions, "positions", self.mesh.nodes().len())?;
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.change(py)?;
         in_world!(&mut world.world, world => world.body_mut(self.id).set_node_positions(&places));
         world.refresh(py)
     }
@@ -145,48 +164,61 @@ impl PySimulatedBody {
     /// to be written to. It outlives the world, and shows its last moment then. A cut leaves its shape as it is.
     #[getter]
     fn live_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.world.borrow_mut(py).live_positions(py, self.id)
+        self.compute(py)?.live_positions(py, self.id)
+    }
+
+    /// Positions of the nodes [m] where the engine has them, without a copy: an array of shape (n, 3), not to be written to. The world
+    /// stands still as long as it, or a slice of it, is alive: what would change its state (a step, a cut, a snapshot put back, positions
+    /// that are set) raises BufferError and changes nothing. It keeps the world alive. Nodes are never renumbered: an array that is
+    /// asked for after a cut has the shape of the one before.
+    fn view_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(self.world.bind(py), self.id, Of::Positions)
+    }
+
+    /// Velocities of the nodes [m/s] where the engine has them; of shape (n, 3), under the rules of `view_positions`.
+    fn view_velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        view(self.world.bind(py), self.id, Of::Velocities)
     }
 
     /// Velocities of the nodes [m/s]; shape (n, 3). Setting them changes the directions that are free.
     #[getter]
-    fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        in_world!(&self.world.borrow(py).world, world => vector_array(py, world.body(self.id).velocities()).into_any())
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(in_world!(&self.read(py)?.world, world => vector_array(py, world.body(self.id).velocities()).into_any()))
     }
 
     #[setter]
     fn set_velocities(&self, py: Python<'_>, velocities: Numbers<'_>) -> PyResult<()> {
         let velocities = vectors_of(&velocities, "velocities", self.mesh.nodes().len())?;
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.change(py)?;
         in_world!(&mut world.world, world => world.body_mut(self.id).set_node_velocities(&velocities));
         Ok(())
     }
 
     /// Internal forces +∂W/∂x [N]; shape (n, 3). The force that the tissue exerts on its nodes is the negative.
     #[getter]
-    fn internal_forces<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let mut world = self.world.borrow_mut(py);
-        in_world!(&mut world.world, world => vector_array(py, world.internal_forces(self.id)).into_any())
+    fn internal_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut world = self.compute(py)?;
+        Ok(in_world!(&mut world.world, world => vector_array(py, world.internal_forces(self.id)).into_any()))
     }
 
     /// Gravity and loads on the nodes [N]; shape (n, 3).
     #[getter]
-    fn external_forces<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let mut world = self.world.borrow_mut(py);
-        in_world!(&mut world.world, world => vector_array(py, world.external_forces(self.id)).into_any())
+    fn external_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut world = self.compute(py)?;
+        Ok(in_world!(&mut world.world, world => vector_array(py, world.external_forces(self.id)).into_any()))
     }
 
     /// Lumped masses of the nodes [kg]; shape (n,).
     #[getter]
-    fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn masses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             list_array(py, world.body(self.id).state().masses.iter().map(|mass| mass.to_f64()).collect())
-        })
+        }))
     }
 
-    /// How each node moves: "free", "fixed", "prescribed", "guided", "held" by an instrument, or "retired" by a cut.
+    /// How each node moves: "free", "fixed", "prescribed", "guided", "held" by an instrument, "retired" by a cut, or "following" a boundary.
     #[getter]
-    fn motions(&self, py: Python<'_>) -> Vec<&'static str> {
+    fn motions(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
         let word = |motion: &NodeMotion| match motion {
             NodeMotion::Free => "free",
             NodeMotion::Fixed => "fixed",
@@ -194,60 +226,61 @@ impl PySimulatedBody {
             NodeMotion::Guided(_) => "guided",
             NodeMotion::Held(_) => "held",
             NodeMotion::Retired => "retired",
+            NodeMotion::Following => "following",
         };
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).state().motions.iter().map(word).collect())
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).state().motions.iter().map(word).collect()))
     }
 
     /// Which cells are removed; shape (cells,), bool.
     #[getter]
-    fn removed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn removed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             list_array(py, world.body(self.id).state().removed.clone())
-        })
+        }))
     }
 
     /// How far each node is seared: 0 where tissue is fresh, 1 at the rim of a burnt cut; shape (n,).
     #[getter]
-    fn seared<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn seared<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             list_array(py, world.body(self.id).seared().iter().map(|&share| share.to_f64()).collect())
-        })
+        }))
     }
 
     /// Cells that are not removed.
     #[getter]
-    fn cell_count(&self, py: Python<'_>) -> usize {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).cell_count())
+    fn cell_count(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).cell_count()))
     }
 
     /// Largest distance of a node from its place at rest [m].
     #[getter]
-    fn max_displacement(&self, py: Python<'_>) -> f64 {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).max_displacement())
+    fn max_displacement(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).max_displacement()))
     }
 
     /// The longest stable sub-step of the explicit scheme at rest [s].
     #[getter]
-    fn stable_step(&self, py: Python<'_>) -> f64 {
-        in_world!(&self.world.borrow(py).world, world => world.body(self.id).stable_step())
+    fn stable_step(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).stable_step()))
     }
 
     /// The current surface: triangles of shape (n, 3), uint32, counter-clockwise seen from outside, and whether a cut laid each open.
-    fn surface<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<bool>>) {
-        let surface = in_world!(&self.world.borrow(py).world, world => world.body(self.id).surface());
+    fn surface<'py>(&self, py: Python<'py>) -> PyResult<Surface<'py>> {
+        let surface = in_world!(&self.read(py)?.world, world => world.body(self.id).surface());
         let cut = list_array(py, surface.iter().map(|triangle| triangle.cut).collect());
-        (index_array(py, surface.iter().map(|triangle| triangle.nodes)), cut)
+        Ok((index_array(py, surface.iter().map(|triangle| triangle.nodes)), cut))
     }
 
     /// Measures the body now.
-    fn observe(&self, py: Python<'_>) -> PyBodyObservables {
-        let mut world = self.world.borrow_mut(py);
-        PyBodyObservables(in_world!(&mut world.world, world => world.observe(self.id)))
+    fn observe(&self, py: Python<'_>) -> PyResult<PyBodyObservables> {
+        let mut world = self.compute(py)?;
+        Ok(PyBodyObservables(in_world!(&mut world.world, world => world.observe(self.id))))
     }
 
     /// Removes cells by number; cells that are gone already are passed over. Gives how many went, dropped pieces included.
     fn remove_cells(&self, py: Python<'_>, cells: Vec<u32>) -> PyResult<usize> {
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.change(py)?;
         in_world!(&mut world.world, world => world.remove_cells(self.id, &cells)).or_raise()
     }
 
@@ -271,7 +304,7 @@ impl PySimulatedBody {
     ) -> PyResult<PyStaticReport> {
         let settings = QuasiStatic { tolerance, iterations, first_step, smallest_step, small_strain };
         let mut solver = self::solver(solver, 1e-12)?;
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.change(py)?;
         let inner = &mut world.world;
         let outcome =
             py.detach(|| in_world!(inner, world => world.settle(self.id, &settings, solver.as_mut()))).or_raise();
@@ -305,7 +338,7 @@ impl PySimulatedBody {
         let right: Vec<Vec<Vec3<f64>>> =
             (0..count).map(|k| flat[k * 3 * nodes..][..3 * nodes].chunks(3).map(vector).collect()).collect();
         let mut solver = self::solver(solver, 1e-12)?;
-        let mut world = self.world.borrow_mut(py);
+        let mut world = self.compute(py)?;
         let inner = &mut world.world;
         let answers = py
             .detach(|| in_world!(inner, world => world.respond(self.id, &right, inertia, solver.as_mut())))
@@ -316,12 +349,12 @@ impl PySimulatedBody {
     }
 
     /// Deformation gradients F, of hexahedra at their centres; shape (cells, 3, 3).
-    fn deformation_gradient<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+    fn deformation_gradient<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         matrix_field!(self, py, |body, cell| body.deformation_gradient(cell))
     }
 
     /// Green strains E = ½(FᵀF − I); shape (cells, 3, 3).
-    fn green_strain<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+    fn green_strain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         matrix_field!(self, py, |body, cell| {
             let gradient = body.deformation_gradient(cell);
             (gradient.transpose() * gradient - Mat3::diagonal(1.0)) * 0.5
@@ -329,48 +362,48 @@ impl PySimulatedBody {
     }
 
     /// First Piola–Kirchhoff stresses P [Pa] of the law; shape (cells, 3, 3). The volume-keeping force is no part of them.
-    fn first_piola_stress<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+    fn first_piola_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         matrix_field!(self, py, |body, cell| body.first_piola_stress(cell))
     }
 
     /// Second Piola–Kirchhoff stresses S = F⁻¹P [Pa] of the law; shape (cells, 3, 3).
-    fn second_piola_stress<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+    fn second_piola_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         matrix_field!(self, py, |body, cell| body.deformation_gradient(cell).inverse() * body.first_piola_stress(cell))
     }
 
     /// Cauchy stresses σ = P Fᵀ/det F [Pa] of the law; shape (cells, 3, 3).
-    fn cauchy_stress<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+    fn cauchy_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         matrix_field!(self, py, |body, cell| cauchy(body, cell))
     }
 
     /// Von Mises stresses √(3/2 dev σ : dev σ) [Pa] of the Cauchy stress; shape (cells,).
-    fn von_mises_stress<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn von_mises_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let body = world.body(self.id);
             list_array(py, each_cell(body, |cell| von_mises(&cauchy(body, cell)), || f64::NAN))
-        })
+        }))
     }
 
     /// V/V0 of every cell: 1 at rest, negative where a cell is turned inside out; shape (cells,).
-    fn volume_ratio<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn volume_ratio<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let body = world.body(self.id);
             list_array(py, each_cell(body, |cell| body.volume_ratio(cell), || f64::NAN))
-        })
+        }))
     }
 
     /// Equivalent strains √(⅔ dev E : dev E): the elongation in small uniaxial tension; shape (cells,).
-    fn equivalent_strain<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        in_world!(&self.world.borrow(py).world, world => {
+    fn equivalent_strain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let body = world.body(self.id);
             list_array(py, each_cell(body, |cell| body.equivalent_strain(cell), || f64::NAN))
-        })
+        }))
     }
 
     /// Internal forces [N] that the body would have at positions `x` [m], with the cells that are left; shape (n, 3).
     fn forces_at<'py>(&self, py: Python<'py>, x: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
         let x = vectors_of(&x, "x", self.mesh.nodes().len())?;
-        Ok(in_world!(&self.world.borrow(py).world, world => {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let (models, x) = (&world.body(self.id).state().models, cast(&x));
             let mut forces = vec![Vec3::ZERO; x.len()];
             let mut scratch = Scratch::for_models(x.len(), models);
@@ -383,7 +416,7 @@ impl PySimulatedBody {
     fn product_at<'py>(&self, py: Python<'py>, x: Numbers<'py>, dx: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
         let nodes = self.mesh.nodes().len();
         let (x, dx) = (vectors_of(&x, "x", nodes)?, vectors_of(&dx, "dx", nodes)?);
-        Ok(in_world!(&self.world.borrow(py).world, world => {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let (models, x, dx) = (&world.body(self.id).state().models, cast(&x), cast(&dx));
             let mut product = vec![Vec3::ZERO; x.len()];
             let mut scratch = Scratch::for_models(x.len(), models);
@@ -399,7 +432,7 @@ impl PySimulatedBody {
     /// the same two nodes add up; `stiffness` makes a matrix of scipy's of them.
     fn blocks<'py>(&self, py: Python<'py>, x: Numbers<'py>) -> PyResult<BlockArrays<'py>> {
         let x = vectors_of(&x, "x", self.mesh.nodes().len())?;
-        let blocks = in_world!(&self.world.borrow(py).world, world => {
+        let blocks = in_world!(&self.read(py)?.world, world => {
             let (models, x) = (&world.body(self.id).state().models, cast(&x));
             let mut scratch = Scratch::for_models(x.len(), models);
             Blocks::of(models, &x, &mut scratch)
@@ -410,13 +443,17 @@ impl PySimulatedBody {
     /// Energy [J] that the body would store at positions `x` [m], with the cells that are left.
     fn energy_at(&self, py: Python<'_>, x: Numbers<'_>) -> PyResult<f64> {
         let x = vectors_of(&x, "x", self.mesh.nodes().len())?;
-        Ok(in_world!(&self.world.borrow(py).world, world => {
+        Ok(in_world!(&self.read(py)?.world, world => {
             let (models, x) = (&world.body(self.id).state().models, cast(&x));
             models.iter().map(|model| model.energy(&x)).sum()
         }))
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!("<body `{}` of {} cells in a world>", self.name(py), self.cell_count(py))
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let world = self.read(py)?;
+        let (name, cells) = in_world!(&world.world, world => {
+            (world.body(self.id).name().to_owned(), world.body(self.id).cell_count())
+        });
+        Ok(format!("<body `{name}` of {cells} cells in a world>"))
     }
 }

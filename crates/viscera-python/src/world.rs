@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use indexmap::IndexMap;
 use numpy::{PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -19,12 +18,13 @@ use crate::arrays::{NumpyScalar, vector_array};
 use crate::body::{Description, PyBody};
 use crate::describe;
 use crate::error::OrRaise;
-use crate::instrument::PyTool;
+use crate::instrument::{AnyInstrument, PyTool};
 use crate::integrator::integrator;
 use crate::model::choose;
 use crate::region::region;
 use crate::report::PyStepReport;
 use crate::simulated::PySimulatedBody;
+use crate::view::Views;
 
 /// How long steps are made before the interpreter is asked whether someone pressed Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -49,14 +49,18 @@ pub(crate) use in_world;
 /// Bodies and instruments that move together in time.
 ///
 /// Steps let other threads of Python run. A world is used by one thread at a time: a call while another thread steps it raises
-/// RuntimeError ("already borrowed").
+/// RuntimeError ("already mutably borrowed").
 #[pyclass(name = "World", module = "viscera")]
 pub(crate) struct PyWorld {
     pub(crate) world: AnyWorld,
     pub(crate) executor: Executor,
     /// What was said about each body, where Python said it.
     pub(crate) descriptions: Vec<Option<Description>>,
-    pub(crate) instrument_names: Vec<String>,
+    /// Names of instruments, and what Python said about them.
+    pub(crate) instruments: Vec<(String, Option<AnyInstrument>)>,
+    /// What Python grew together.
+    pub(crate) attachments: Vec<Attachment>,
+    pub(crate) views: Views,
     /// Arrays that follow positions from step to step.
     live: Vec<Option<Py<PyAny>>>,
 }
@@ -93,20 +97,35 @@ pub(crate) struct PyAttachment {
 impl PyAttachment {
     /// Force with which the other body pulls at the attached one [N]: the mean over the last step.
     #[getter]
-    fn force(&self, py: Python<'_>) -> [f64; 3] {
-        in_world!(&self.world.borrow(py).world, world => world.attachment_force(self.id).to_array())
+    fn force(&self, py: Python<'_>) -> PyResult<[f64; 3]> {
+        Ok(in_world!(&self.world.try_borrow(py)?.world, world => world.attachment_force(self.id).to_array()))
     }
 }
 
 impl PyWorld {
     pub(crate) fn from_world(world: AnyWorld, executor: Executor, instrument_names: Vec<String>) -> Self {
         let bodies = in_world!(&world, world => world.body_ids().count());
-        let descriptions = vec![None; bodies];
-        Self { world, executor, descriptions, instrument_names, live: Vec::new() }
+        Self {
+            world,
+            executor,
+            descriptions: vec![None; bodies],
+            instruments: instrument_names.into_iter().map(|name| (name, None)).collect(),
+            attachments: Vec::new(),
+            views: Views::default(),
+            live: Vec::new(),
+        }
+    }
+
+    /// The world, to be changed: not while another thread steps it (RuntimeError), nor while arrays look into it (BufferError).
+    pub(crate) fn change<'py>(world: &Bound<'py, Self>) -> PyResult<PyRefMut<'py, Self>> {
+        let world = world.try_borrow_mut()?;
+        world.views.none_alive()?;
+        Ok(world)
     }
 
     /// Makes steps, and asks for Ctrl-C now and then.
     fn make_steps(&mut self, py: Python<'_>, count: u64) -> PyResult<Option<StepReport>> {
+        self.views.none_alive()?;
         let Self { world, executor, .. } = self;
         let (mut made, mut last) = (0, None);
         let mut outcome = Ok(());
@@ -178,18 +197,18 @@ fn copy_into<T: NumpyScalar>(array: &Bound<'_, PyAny>, body: &SimulatedBody<T>) 
     Ok(())
 }
 
-fn handle(slf: &Bound<'_, PyWorld>, id: BodyId) -> PySimulatedBody {
-    let world = slf.borrow();
+fn handle(slf: &Bound<'_, PyWorld>, id: BodyId) -> PyResult<PySimulatedBody> {
+    let world = slf.try_borrow()?;
     let mesh = in_world!(&world.world, inner => {
         let described = world.descriptions.get(id.0).and_then(Option::as_ref);
         described.map_or_else(|| inner.body(id).mesh().clone().into(), |described| described.mesh.clone())
     });
-    PySimulatedBody { world: slf.clone().unbind(), id, mesh }
+    Ok(PySimulatedBody { world: slf.clone().unbind(), id, mesh })
 }
 
 #[pymethods]
 impl PyWorld {
-    /// An empty world: `gravity` [m/s²], `step` that one call of `step` advances [s], `integrator` (`Explicit` or `Implicit`),
+    /// An empty world: `gravity` [m/s²], `step` that one call of `step` advances [s], `integrator` (`Explicit`, `Implicit` or `QuasiStatic`),
     /// `precision` "double" or "single" (twice as fast), and how many `threads` a step of many cells may use.
     #[new]
     #[pyo3(signature = (*, gravity=[0.0, -9.81, 0.0], step=5e-3, integrator=None, precision="double", threads=1))]
@@ -210,35 +229,36 @@ impl PyWorld {
 
     /// Adds a body, and gives it as it is simulated.
     fn add(slf: &Bound<'_, Self>, body: &PyBody) -> PyResult<PySimulatedBody> {
-        let id = slf.borrow_mut().add_description(slf.py(), &body.0)?;
-        Ok(handle(slf, id))
+        let id = Self::change(slf)?.add_description(slf.py(), &body.0)?;
+        handle(slf, id)
     }
 
     /// Bodies by name; where two have the same, the later one.
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let bodies = PyDict::new(slf.py());
-        let ids: Vec<BodyId> = in_world!(&slf.borrow().world, world => world.body_ids().collect());
+        let ids: Vec<BodyId> = in_world!(&slf.try_borrow()?.world, world => world.body_ids().collect());
         for id in ids {
-            let name = in_world!(&slf.borrow().world, world => world.body(id).name().to_owned());
-            bodies.set_item(name, handle(slf, id))?;
+            let name = in_world!(&slf.try_borrow()?.world, world => world.body(id).name().to_owned());
+            bodies.set_item(name, handle(slf, id)?)?;
         }
         Ok(bodies)
     }
 
     /// The body of this name.
     fn body(slf: &Bound<'_, Self>, name: &str) -> PyResult<PySimulatedBody> {
-        let id = in_world!(&slf.borrow().world, world => world.body_ids().find(|&id| world.body(id).name() == name));
-        id.map(|id| handle(slf, id)).ok_or_else(|| PyKeyError::new_err(format!("the world has no body `{name}`")))
+        let id =
+            in_world!(&slf.try_borrow()?.world, world => world.body_ids().find(|&id| world.body(id).name() == name));
+        id.map_or_else(|| Err(PyKeyError::new_err(format!("the world has no body `{name}`"))), |id| handle(slf, id))
     }
 
     /// Adds an instrument under a name.
     #[pyo3(signature = (instrument, name=None))]
     fn add_instrument(slf: &Bound<'_, Self>, instrument: &Bound<'_, PyAny>, name: Option<String>) -> PyResult<PyTool> {
         let id = {
-            let mut world = slf.borrow_mut();
-            let id = crate::instrument::add(&mut world.world, instrument)?;
-            world.instrument_names.push(name.unwrap_or_else(|| format!("instrument-{}", id.0)));
+            let (mut world, described) = (slf.try_borrow_mut()?, AnyInstrument::of(instrument)?);
+            let id = described.add(&mut world.world)?;
+            world.instruments.push((name.unwrap_or_else(|| format!("instrument-{}", id.0)), Some(described)));
             id
         };
         Ok(PyTool { world: slf.clone().unbind(), id })
@@ -248,9 +268,9 @@ impl PyWorld {
     #[getter]
     fn instruments<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let instruments = PyDict::new(slf.py());
-        let ids: Vec<InstrumentId> = in_world!(&slf.borrow().world, world => world.instrument_ids().collect());
+        let ids: Vec<InstrumentId> = in_world!(&slf.try_borrow()?.world, world => world.instrument_ids().collect());
         for id in ids {
-            let name = slf.borrow().instrument_names[id.0].clone();
+            let name = slf.try_borrow()?.instruments[id.0].0.clone();
             instruments.set_item(name, PyTool { world: slf.clone().unbind(), id })?;
         }
         Ok(instruments)
@@ -268,12 +288,15 @@ impl PyWorld {
             return Err(PyValueError::new_err("both bodies must be bodies of this world"));
         }
         let attachment = Attachment { body: body.id, region: self::region(region)?, to: to.id };
-        let id = in_world!(&mut slf.borrow_mut().world, world => world.attach(attachment)).or_raise()?;
+        let mut world = Self::change(slf)?;
+        let id = in_world!(&mut world.world, world => world.attach(attachment.clone())).or_raise()?;
+        world.attachments.push(attachment);
         Ok(PyAttachment { world: slf.clone().unbind(), id })
     }
 
     /// Advances by one step; other threads run meanwhile. Raises `StepFailed` where that fails, and the world is as before.
     fn step(&mut self, py: Python<'_>) -> PyResult<PyStepReport> {
+        self.views.none_alive()?;
         let Self { world, executor, .. } = self;
         let report = py.detach(|| in_world!(world, world => world.step_on(executor))).or_raise()?;
         if !self.live.is_empty() {
@@ -314,7 +337,7 @@ impl PyWorld {
 
     /// "single" or "double".
     #[getter]
-    fn precision(&self) -> &'static str {
+    pub(crate) fn precision(&self) -> &'static str {
         match self.world {
             AnyWorld::Single(_) => "single",
             AnyWorld::Double(_) => "double",
@@ -331,6 +354,7 @@ impl PyWorld {
 
     /// Goes back to a snapshot of this world. Raises `WorldRefused` for one of a world with other bodies or instruments.
     fn restore(&mut self, py: Python<'_>, snapshot: &PySnapshot) -> PyResult<()> {
+        self.views.none_alive()?;
         let world = &mut self.world;
         match (world, &snapshot.0) {
             (AnyWorld::Single(world), AnySnapshot::Single(snapshot)) => {
@@ -352,32 +376,18 @@ impl PyWorld {
         }))
     }
 
-    /// The world as a scene file that lasts `duration` [s], for the command line and for `Scene.load`: writes `name`.toml and a mesh
-    /// file for each body into `folder`. Of a world whose bodies Python described, at its beginning, and without instruments;
-    /// bodies with another law or density in each cell are refused.
+    /// How many arrays look into the engine's memory now (`SimulatedBody.view_positions`): the world stands still until there are none.
+    #[getter]
+    fn views(&self) -> usize {
+        self.views.count()
+    }
+
+    /// The world as a scene file that lasts `duration` [s], for the command line and for `Scene.load`, that runs to the same bits: writes
+    /// `name`.toml and a mesh file for each body into `folder`. Of a world that Python described, at its beginning. Raises ValueError for
+    /// what a scene has no words for, such as another law or density in each cell, or tools that wait for a hand.
     #[pyo3(signature = (folder, *, duration, name="scene"))]
     fn write_scene(&self, folder: PathBuf, duration: f64, name: &str) -> PyResult<PathBuf> {
-        if !self.instrument_names.is_empty() || in_world!(&self.world, world => world.steps()) > 0 {
-            return Err(PyValueError::new_err(
-                "only a world without instruments, at its beginning, can be written as a scene",
-            ));
-        }
-        let mut bodies = IndexMap::new();
-        for body in &self.descriptions {
-            let Some(body) = body else {
-                return Err(PyValueError::new_err(
-                    "the world was built from a scene: write that, with `Scene.to_toml`",
-                ));
-            };
-            if bodies.insert(body.name.clone(), body.clone()).is_some() {
-                return Err(PyValueError::new_err(format!(
-                    "two bodies are named `{}`; names in a scene differ",
-                    body.name
-                )));
-            }
-        }
-        let config = in_world!(&self.world, world => world.config().clone());
-        let file = describe::scene(&config, self.precision(), duration, &bodies, &folder)?;
+        let file = describe::scene(self, duration, &folder)?;
         let failed = |error: String| PyValueError::new_err(error);
         let file: SceneFile = serde_json::from_value(file).map_err(|error| failed(error.to_string()))?;
         let path = folder.join(format!("{name}.toml"));
@@ -387,6 +397,6 @@ impl PyWorld {
 
     fn __repr__(&self) -> String {
         let (bodies, time) = in_world!(&self.world, world => (world.body_ids().count(), world.time()));
-        format!("<world of {bodies} bodies and {} instruments at {time} s>", self.instrument_names.len())
+        format!("<world of {bodies} bodies and {} instruments at {time} s>", self.instruments.len())
     }
 }

@@ -54,3 +54,15 @@ def test_presets_say_where_their_moduli_come_from():
         lame = viscera.Lame(law.parameters["lambda"], law.parameters["mu"])
         assert lame.young == pytest.approx(preset.young, rel=1e-12), name
         assert any(letter.isdigit() for letter in preset.source)
+
+
+def test_presets_are_those_of_scenes_and_have_the_modulus_that_they_state_along_their_fibres():
+    assert {"liver", "kidney", "spleen", "brain", "fat", "muscle", "skin", "gallbladder-wall", "artery"} <= set(viscera.TISSUES)
+    muscle = viscera.TISSUES["muscle"]
+    low, high = muscle.measured["along"].range
+    assert low <= muscle.along <= high and muscle.measured["young"].weakness
+    values = muscle.law_along([0.0, 2.0, 0.0]).parameters
+    matrix = viscera.Lame(values["lambda"], values["mu"])
+    assert matrix.young + 2.0 * values["fibre-stiffness"] == pytest.approx(muscle.along, rel=1e-12)
+    with pytest.raises(ValueError, match="liver has no fibres"):
+        viscera.TISSUES["liver"].law_along([1.0, 0.0, 0.0])

@@ -41,6 +41,22 @@ def test_gradients_of_a_measured_force_are_right():
     check_gradient(Equilibrium(pressed, gravity=[0, 0, 0], force_on=plate, force=[0, 0, -10]), {"young": 8e3, "poisson": 0.4})
 
 
+@pytest.mark.parametrize("measured", ["positions", "force"])
+def test_gradients_by_density_load_and_way_are_right(measured):
+    """What pulls, what hangs and where the plate is brought are parameters as well as what the tissue is."""
+
+    def loaded(p):
+        law = viscera.NeoHookean.from_young_poisson(p["young"], 0.4)
+        pull = viscera.Load.traction("x-max", [p["pull"], 0.0, 0.0])
+        plate = ("z-max", [0.0, p["across"], p["way"]])
+        return viscera.Body(MESH, p["density"], model=viscera.TotalLagrangian(law), fix="z-min", prescribe=plate, load=pull)
+
+    p = {"young": 8e3, "density": 1100.0, "pull": 150.0, "way": -0.015, "across": 0.01}
+    plate, skin = MESH.nodes_in("z-max"), MESH.nodes_in("x-max")
+    measurement = {"positions": {"nodes": skin, "positions": MESH.nodes[skin]}, "force": {"force_on": plate, "force": [0, 0, -10]}}
+    check_gradient(Equilibrium(loaded, gravity=[0, -3, 0], **measurement[measured]), p)
+
+
 def test_gradients_of_a_motion_are_handed_on_from_step_to_step():
     nodes = MESH.nodes_in("z-max")
     seen = {2: MESH.nodes[nodes], 4: MESH.nodes[nodes]}

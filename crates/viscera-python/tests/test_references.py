@@ -167,3 +167,35 @@ def test_laws_have_the_stresses_of_the_closed_forms(reference):
     for row in rows:
         gradient = np.diag([row["value"], 1.0, 1.0])
         assert relative(law.stress(gradient)[0], row["P_Pa"]) < 1e-8
+
+
+def test_a_sphere_is_pressed_into_a_block_with_the_force_of_the_exact_active_set(reference, reference_mesh):
+    """H02: the compliance of the upper face from one answer for each of its nodes; nodes that pull are let go, those inside are taken hold of."""
+    case = reference("H02_block_indentation")
+    mesh, contact = reference_mesh("H02_block_indentation.msh"), case["contact"]
+    law = viscera.LinearElastic.from_young_poisson(case["material"]["E_Pa"], case["material"]["nu"])
+    world = viscera.World(gravity=[0, 0, 0])
+    hold = viscera.Region.plane([0, 0, 0], [0, 0, 1])
+    block = world.add(viscera.Body(mesh, 1000.0, model=viscera.TotalLagrangian(law), fix=hold))
+    nodes = np.array(case["reference"]["top_node_ids_0based"])
+    forces = np.zeros((len(nodes), len(mesh.nodes), 3))
+    forces[np.arange(len(nodes)), nodes, 2] = 1.0
+    compliance = block.respond(forces)[:, nodes, 2].T
+    assert relative(compliance, compliance.T) < 1e-10
+    away = np.linalg.norm(mesh.nodes[nodes, :2] - contact["axis_xy_m"], axis=1)
+    radius = contact["sphere_radius_m"]
+    sphere = radius - np.sqrt(radius**2 - away**2)
+    for row in case["reference"]["table"]:
+        gap, active = sphere - row["depth_m"], np.zeros(len(nodes), dtype=bool)
+        active[gap < 0] = True
+        for _ in range(50):
+            pressure = np.zeros(len(nodes))
+            pressure[active] = np.linalg.solve(compliance[np.ix_(active, active)], gap[active])
+            inside = compliance @ pressure > gap + 1e-12 * row["depth_m"]
+            follows = (active & (pressure < 0)) | (~active & inside)
+            if np.array_equal(follows, active):
+                break
+            active = follows
+        assert nodes[active].tolist() == sorted(row["active_node_ids_0based"])
+        assert relative(-pressure.sum(), row["force_N"]) < 1e-6
+        assert relative(-pressure[active], row["nodal_normal_force_N"]) < 1e-6

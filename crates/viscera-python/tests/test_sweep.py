@@ -52,6 +52,39 @@ def test_a_table_becomes_pandas_arrow_parquet_and_csv(tmp_path):
     assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
 
 
+def test_columns_have_the_types_of_what_is_in_them_also_where_a_case_was_refused(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    parquet = pytest.importorskip("pyarrow.parquet")
+    changes = [
+        {"body.bar.law.poisson": 0.3, "gravity": [0, -1, 0], "precision": "single"},
+        {"body.bar.law.poisson": 0.6, "gravity": [0, -2, 0], "precision": "double"},
+    ]
+
+    def measure(world):
+        return sag(world) | {"cells": world.body("bar").cell_count, "rests": world.body("bar").observe().at_rest}
+
+    whole, part = (viscera.sweep(viscera.Scene.parse(SCENE), cases, measure=measure) for cases in (changes[:1], changes))
+    types = {
+        "body.bar.law.poisson": pyarrow.float64(),
+        "gravity": pyarrow.list_(pyarrow.int64()),
+        "precision": pyarrow.string(),
+        "time": pyarrow.float64(),
+        "error": pyarrow.string(),
+        "sag": pyarrow.float64(),
+        "cells": pyarrow.int64(),
+        "rests": pyarrow.bool_(),
+    }
+    for table in (whole, part):
+        schema = table.to_arrow().schema
+        assert dict(zip(schema.names, schema.types)) == types
+    part.to_parquet(tmp_path / "t.parquet")
+    back = parquet.read_table(tmp_path / "t.parquet")
+    assert back.schema.equals(part.to_arrow().schema) and back.to_pylist() == part.to_arrow().to_pylist()
+    assert back["sag"].null_count == back["time"].null_count == 1 and "poisson" in back["error"][1].as_py()
+    frame = part.to_pandas()
+    assert frame["sag"].dtype == float and frame["sag"].isna().tolist() == [False, True]
+
+
 def count(path):
     """Measures slowly, and takes down that it did."""
 

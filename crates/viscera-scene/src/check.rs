@@ -8,7 +8,8 @@ use serde_json::{Map, Value as Json};
 use crate::document::{Document, Entry, Node, Value};
 use crate::error::SceneError;
 use crate::unit::{Dimension, with_article};
-use wording::{closest, describe, known_list, quoted};
+pub use wording::closest;
+use wording::{describe, known_list, quoted};
 
 /// Everything in the document that the schema does not allow.
 pub(crate) fn check(document: &Document, schema: &Json) -> Vec<SceneError> {
@@ -174,7 +175,9 @@ impl Check<'_> {
         }
         // A misspelt key is reported once, not as missing too.
         let present = |key: &str| node.child(key).is_some() || meant.iter().any(|name| name == key);
-        for key in strings(schema.get("required")).filter(|key| !present(key)) {
+        // What a tissue may give instead, it has given by now.
+        let given_otherwise = strings(schema.get("then").and_then(|then| then.get("required")));
+        for key in strings(schema.get("required")).chain(given_otherwise).filter(|key| !present(key)) {
             let schema = self.resolved(&properties[key]);
             let help = match schema.get("description").and_then(Json::as_str) {
                 Some(description) => description.replace('\n', " "),

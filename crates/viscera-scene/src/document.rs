@@ -205,6 +205,33 @@ impl Node {
         }
     }
 
+    /// The same, to be changed.
+    pub(crate) fn child_mut(&mut self, part: &str) -> Option<&mut Node> {
+        match &mut self.value {
+            Value::Table(entries) => entries.iter_mut().find(|entry| entry.key == part).map(|entry| &mut entry.node),
+            Value::List(items) => items.get_mut(part.parse::<usize>().ok()?),
+            _ => None,
+        }
+    }
+
+    /// The values of a table or list, to be changed.
+    pub(crate) fn children_mut(&mut self) -> Vec<&mut Node> {
+        match &mut self.value {
+            Value::Table(entries) => entries.iter_mut().map(|entry| &mut entry.node).collect(),
+            Value::List(items) => items.iter_mut().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Puts a value under a key of a table that has none there.
+    pub(crate) fn put_if_absent(&mut self, key: &str, node: Node) {
+        if let Value::Table(entries) = &mut self.value
+            && entries.iter().all(|entry| entry.key != key)
+        {
+            entries.push(Entry { key: key.to_owned(), key_span: node.span.clone(), node });
+        }
+    }
+
     pub(crate) fn entries(&self) -> &[Entry] {
         match &self.value {
             Value::Table(entries) => entries,

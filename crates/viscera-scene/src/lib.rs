@@ -13,9 +13,11 @@ pub mod quantity;
 mod scene;
 mod schema;
 mod summary;
+mod tissue;
 pub mod unit;
 
-pub use build::{BuiltScene, Meshes};
+pub use build::{BodyResponses, BuiltScene, Meshes};
+pub use check::closest;
 pub use error::{Place, SceneError, SceneErrors};
 pub use files::Files;
 pub use scene::Scene;

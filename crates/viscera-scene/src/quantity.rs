@@ -64,6 +64,7 @@ quantities! {
     Time = TIME, "A time [s].";
     Density = DENSITY, "A density [kg/m³].";
     Pressure = PRESSURE, "A pressure, stress or stiffness [Pa].";
+    MembraneStiffness = MEMBRANE_STIFFNESS, "A stiffness of a membrane [N/m].";
     Force = FORCE, "A force [N].";
     Acceleration = ACCELERATION, "An acceleration [m/s²].";
     Angle = ANGLE, "An angle [rad].";

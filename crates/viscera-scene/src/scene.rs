@@ -7,6 +7,7 @@ use crate::error::{SceneError, SceneErrors};
 use crate::file::SceneFile;
 use crate::files::Files;
 use crate::schema::schema;
+use crate::tissue::{without_names, written_out};
 
 /// A scene file and its overrides.
 ///
@@ -86,8 +87,9 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong, in the order of the file.
     pub fn check(&self) -> Result<SceneFile, SceneErrors> {
-        SceneErrors::unless_empty(check(&self.document, &schema()))?;
-        serde_json::from_value(self.document.root.to_json())
+        let document = written_out(&self.document);
+        SceneErrors::unless_empty(check(&document, &schema()))?;
+        serde_json::from_value(without_names(document.root.to_json()))
             .map_err(|error| self.document.error_at(&[], error.to_string(), "").into())
     }
 
@@ -117,13 +119,13 @@ impl Scene {
     }
 }
 
-/// Paths stand under the keys `file` and `surface`, wherever these are.
+/// Paths stand under the keys `file`, `surface` and `responses`, wherever these are.
 fn files_in(tree: &serde_json::Value, found: &mut impl FnMut(&Path)) {
     match tree {
         serde_json::Value::Object(entries) => {
             for (key, value) in entries {
                 match (key.as_str(), value) {
-                    ("file" | "surface", serde_json::Value::String(path)) => found(Path::new(path)),
+                    ("file" | "surface" | "responses", serde_json::Value::String(path)) => found(Path::new(path)),
                     _ => files_in(value, found),
                 }
             }

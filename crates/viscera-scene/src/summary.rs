@@ -79,8 +79,8 @@ pub struct InstrumentSummary {
     pub radius: f64,
     /// Length of its path [m].
     pub path: f64,
-    /// When it begins and ends its work [s]; to the end of the run where the scene gives none.
-    pub active: (f64, f64),
+    /// When it begins and ends its work [s]; to the end of the run where the scene gives none. None where only a hand makes it work.
+    pub active: Option<(f64, f64)>,
 }
 
 impl Scene {
@@ -149,9 +149,9 @@ impl<T: Scalar> BuiltScene<T> {
         let end = self.file.duration.0;
         let instrument = self.world.instrument(self.instruments[name]);
         let active = match &self.file.instrument[name] {
-            InstrumentFile::Probe { .. } => (0.0, end),
-            InstrumentFile::Grasper { close, open, .. } => (close.0, open.map_or(end, |open| open.0)),
-            InstrumentFile::Cautery { on, off, .. } => (on.map_or(0.0, |on| on.0), off.map_or(end, |off| off.0)),
+            InstrumentFile::Probe { .. } => Some((0.0, end)),
+            InstrumentFile::Grasper { close: from, open: to, .. }
+            | InstrumentFile::Cautery { on: from, off: to, .. } => from.map(|from| (from.0, to.map_or(end, |to| to.0))),
         };
         let stretches = instrument.path().points().windows(2);
         InstrumentSummary {
@@ -208,7 +208,11 @@ impl fmt::Display for BodySummary {
         writeln!(out, "\nbody {}", self.name)?;
         writeln!(out, "  mesh    {} {}, {} nodes, {x:.0} x {y:.0} x {z:.0} mm", self.cells, self.shape, self.nodes)?;
         writeln!(out, "  tissue  {} by {}, {:.3} kg", self.law, self.model, self.mass)?;
-        writeln!(out, "  stable  explicit steps up to {:.3} ms", self.stable_step * 1e3)?;
+        if self.stable_step.is_finite() {
+            writeln!(out, "  stable  explicit steps up to {:.3} ms", self.stable_step * 1e3)?;
+        } else {
+            writeln!(out, "  stable  in steps of any length: it rests at the end of each")?;
+        }
         writeln!(out, "  fixed   {} nodes: {}", self.fixed.0, self.fixed.1)?;
         if self.prescribed > 0 {
             writeln!(out, "  moved   {} nodes", self.prescribed)?;
@@ -225,9 +229,9 @@ impl fmt::Display for BodySummary {
 
 impl fmt::Display for InstrumentSummary {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let (from, to) = self.active;
         let (radius, path) = (self.radius * 1e3, self.path * 1e2);
+        let when = self.active.map_or("for a hand".to_owned(), |(from, to)| format!("at work from {from} to {to} s"));
         writeln!(out, "\ninstrument {}", self.name)?;
-        writeln!(out, "  {} of radius {radius:.1} mm, path {path:.1} cm, at work from {from} to {to} s", self.kind)
+        writeln!(out, "  {} of radius {radius:.1} mm, path {path:.1} cm, {when}", self.kind)
     }
 }

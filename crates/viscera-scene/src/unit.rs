@@ -38,6 +38,7 @@ dimensions! {
         "Pa" = 1.0, 1.0; "kPa" = 1e3, 1.0; "MPa" = 1e6, 1.0; "GPa" = 1e9, 1.0; "N/m^2" = 1.0, 1.0; "N/m²" = 1.0, 1.0;
         "mmHg" = 133.322_387_415, 1.0;
     }
+    MEMBRANE_STIFFNESS = "membrane stiffness" { "N/m" = 1.0, 1.0; "N/mm" = 1e3, 1.0; "mN/m" = 1.0, 1e3; }
     FORCE = "force" { "N" = 1.0, 1.0; "mN" = 1.0, 1e3; "kN" = 1e3, 1.0; }
     ACCELERATION = "acceleration" { "m/s^2" = 1.0, 1.0; "m/s²" = 1.0, 1.0; }
     ANGLE = "angle" { "rad" = 1.0, 1.0; "deg" = PI, 180.0; "°" = PI, 180.0; }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use viscera::body::{NodeMotion, SimulatedBody};
 use viscera::math::Vec3;
-use viscera::mesh::{TetMesh, VolumeMesh};
+use viscera::mesh::{Region, TetMesh, VolumeMesh};
 use viscera::world::{BodyObservables, InstrumentObservables};
 use viscera_scene::{BuiltScene, Scene};
 
@@ -240,6 +240,52 @@ fn a_liver_that_was_turned_inside_out_finds_its_shape_again() {
     }
 }
 
+/// Two breaths: the diaphragm goes down, the belly comes out and goes back; the abdomen keeps its volume to rounding in every step,
+/// the thorax takes in what the diaphragm leaves it, and no rib changes its shape.
+#[test]
+fn the_diaphragm_moves_the_belly_and_the_abdomen_keeps_its_volume() {
+    let mut built = scene("breathing-trunk.toml", &[]).build::<f64>().unwrap_or_else(|errors| panic!("{errors}"));
+    let trunk = built.bodies["trunk"];
+    let nodes = |name: &str| -> Vec<usize> {
+        let nodes = Region::Named(name.into()).nodes(built.world.body(trunk).mesh()).unwrap();
+        nodes.into_iter().map(|node| node as usize).collect()
+    };
+    let (belly, diaphragm) = (nodes("belly"), nodes("diaphragm"));
+    let ribs = ["ribs-2", "ribs-3"].map(nodes);
+    let thorax = tetrahedra(built.world.body(trunk)).regions["thorax"].cells.clone();
+    let mean = |of: &[usize], axis: usize, places: &[Vec3<f64>]| {
+        of.iter().map(|&node| places[node][axis]).sum::<f64>() / of.len() as f64
+    };
+    let mut breath = Vec::new();
+    for _ in 0..built.steps() {
+        built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        let body = built.world.body(trunk);
+        let error = body.kept_volumes().next().unwrap().error;
+        assert!(error.abs() <= 1e-12, "{error:e} of the abdomen at {} s", built.world.time());
+        let places = body.positions();
+        let air: f64 = thorax.iter().map(|&cell| body.cell_volume(cell as usize)).sum();
+        breath.push([mean(&belly, 1, places), mean(&diaphragm, 2, places), air]);
+    }
+    // Steps of 20 ms: before the second breath, at its height, and one period after the first of these.
+    let [out, full, again] = [199, 324, 399].map(|step: usize| breath[step]);
+    let mm = |metres: f64| 1e3 * metres;
+    let [belly_way, diaphragm_way, air] = [full[0] - out[0], full[1] - out[1], full[2] - out[2]];
+    assert!(belly_way > 4e-3, "the belly moves by {} mm", mm(belly_way));
+    assert!(diaphragm_way < -5e-3, "the diaphragm moves by {} mm", mm(diaphragm_way));
+    assert!(air > 2e-4, "{} l of air", 1e3 * air);
+    assert!((again[0] - out[0]).abs() < 0.1 * belly_way, "the next breath begins {} mm off", mm(again[0] - out[0]));
+    let body = built.world.body(trunk);
+    for rib in &ribs {
+        for &a in rib {
+            for &b in rib.iter().filter(|&&b| b < a) {
+                let now = (body.positions()[a] - body.positions()[b]).norm();
+                let rest = (body.mesh().nodes()[a] - body.mesh().nodes()[b]).norm();
+                assert!((now / rest - 1.0).abs() < 1e-12, "{a} and {b}: {now} m, {rest} m at rest");
+            }
+        }
+    }
+}
+
 /// The liver that waits for hands hangs from its back: what is held there carries its weight.
 ///
 /// It is damped so much that it comes to rest in its two seconds, and made of larger cells.
@@ -249,7 +295,7 @@ fn the_waiting_liver_hangs_by_its_weight() {
     let mut built = run("liver.toml", &overrides);
     let liver = built.bodies["liver"];
     let observed = built.world.observe(liver);
-    let weight = 9.81 * observed.mass;
+    let weight = -built.world.config().gravity[1] * observed.mass;
     assert!((observed.reaction.y / weight - 1.0).abs() < 0.01, "{} N carry {weight} N", observed.reaction.y);
     assert!(observed.inverted_cells == 0 && observed.max_displacement > 5e-3, "{observed:?}");
 }
@@ -305,4 +351,50 @@ fn clearance(body: &SimulatedBody<f64>, rod: &viscera::instrument::Capsule) -> f
         (place - rod.from - along * share).norm()
     };
     body.surface().iter().flat_map(|triangle| triangle.nodes).map(distance).fold(f64::INFINITY, f64::min)
+}
+
+/// At the end of every step the liver of responses is in equilibrium: what fixes it, what holds it and what dents it sum up to nothing. When
+/// all tools have left, it is as it was.
+#[test]
+fn a_precomputed_liver_is_in_equilibrium_with_its_tools_after_every_step() {
+    let mut built = scene("liver-precomputed.toml", &[("body.liver.mesh.edge", "26 mm"), ("step", "20 ms")])
+        .build::<f64>()
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let (mut left, mut pulled, mut dented) = (0.0f64, 0.0f64, 0.0f64);
+    for _ in 0..built.steps() {
+        built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        let reaction = built.world.observe(built.bodies["liver"]).reaction;
+        let [grasper, probe] =
+            ["grasper", "probe"].map(|name| built.world.observe_instrument(built.instruments[name]).force);
+        left = left.max((reaction + grasper + probe).norm());
+        (pulled, dented) = (pulled.max(grasper.norm()), dented.max(probe.norm()));
+    }
+    assert!(left < 1e-8 * pulled, "{left} N are left of {pulled} N");
+    assert!(pulled > 0.1 && dented > 0.1, "{pulled} N by the grasper, {dented} N by the probe");
+    assert_eq!(built.world.body(built.bodies["liver"]).max_displacement(), 0.0);
+}
+
+/// Until the cautery comes on the back holds the whole pull on the lobe; when that is burnt off it holds nothing, and what is gone was
+/// part of what moves.
+#[test]
+fn the_precomputed_lobe_of_a_hybrid_liver_carries_the_pull_until_the_other_is_burnt_off() {
+    let mut built = scene("liver-hybrid.toml", &[]).build::<f64>().unwrap_or_else(|errors| panic!("{errors}"));
+    let mut before = Vec3::ZERO;
+    for _ in 0..built.steps() {
+        built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        if (built.world.time() - 0.49).abs() < 1e-6 {
+            before = built.world.observe(built.bodies["liver"]).reaction;
+        }
+    }
+    let liver = built.world.observe(built.bodies["liver"]);
+    assert!(before.norm() > 0.2, "the back holds {before:?}");
+    assert!(liver.reaction.norm() < 0.1 * before.norm(), "{:?} after {before:?}", liver.reaction);
+    assert!(liver.removed_cells > 300, "{} cells", liver.removed_cells);
+    let body = built.world.body(built.bodies["liver"]);
+    let mesh = tetrahedra(body);
+    let moves = |corners: &[u32; 4]| corners.iter().any(|&node| mesh.nodes[node as usize].x >= -0.02);
+    let gone = mesh.cells.iter().zip(&body.state().removed).filter(|(_, removed)| **removed);
+    assert!(gone.into_iter().all(|(corners, _)| moves(corners)));
+    let following = body.state().motions.iter().filter(|motion| **motion == NodeMotion::Following).count();
+    assert!(following > 300, "{following} nodes follow");
 }

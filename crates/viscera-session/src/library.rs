@@ -13,15 +13,20 @@ macro_rules! files {
 
 /// Every file of the project's folder `scenes`.
 pub const FILES: &[(&str, &[u8])] = files![
+    "breathing-trunk.toml",
     "cylinder-bend.toml",
     "fibre-tubes.toml",
     "liver-adaptive.toml",
+    "liver-hybrid.toml",
     "liver-inversion.toml",
+    "liver-precomputed.toml",
     "liver-probe.toml",
     "liver-pull.toml",
     "liver-resection.toml",
     "liver.toml",
     "paths/liver-resection.csv",
+    "recordings/edge-cut.viscera-recording",
+    "recordings/lobe-pulled.viscera-recording",
     "scene.schema.json",
 ];
 

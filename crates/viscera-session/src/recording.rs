@@ -12,7 +12,7 @@ use crate::message::{Bytes, Command};
 use crate::simulation::tools::Tool;
 
 /// Grows with every change of what is written.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Steps between marks.
 pub(crate) const INTERVAL: u64 = 50;
 /// By how much numbers may differ from those recorded on another processor, over the largest of them. Contact and cuts multiply
@@ -28,6 +28,8 @@ pub struct Recording {
     pub title: String,
     /// Name of its scene.
     pub scene: String,
+    /// The kind of processor that it was made on, see [`processor`].
+    pub processor: String,
     /// The scene as TOML.
     pub(crate) text: String,
     /// The files that it names.
@@ -89,6 +91,13 @@ pub(crate) enum Agreement {
     None(String),
 }
 
+/// The kind of this processor: its family and the vectors that kernels use on it. On the same kind a recording comes to the same bits.
+pub fn processor() -> String {
+    let vectors = format!("{:?}", viscera::math::dispatch_level());
+    let vectors = vectors.split(['(', ' ', '{']).next().unwrap_or_default().to_lowercase();
+    format!("{} {vectors}", std::env::consts::ARCH)
+}
+
 /// Why bytes are no recording.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
@@ -112,6 +121,7 @@ impl Recording {
             format: FORMAT,
             title,
             scene,
+            processor: processor(),
             text,
             files: BTreeMap::new(),
             tools: Vec::new(),

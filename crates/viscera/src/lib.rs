@@ -6,6 +6,7 @@
 //! but those of the executor that a step is given.
 
 pub mod body;
+pub mod constraint;
 pub mod contact;
 pub mod curve;
 mod cutting;
@@ -19,3 +20,8 @@ pub mod model;
 pub mod solver;
 pub mod stage;
 pub mod world;
+
+/// The guide's chapter on the library, so that its examples are compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/guide/library.md")]
+pub struct Guide;

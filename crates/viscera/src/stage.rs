@@ -15,6 +15,8 @@ pub enum Stage {
     Loads,
     /// Velocities and positions of an explicit sub-step.
     KickAndDrift,
+    /// Volumes that are kept exactly, and rigid parts.
+    Constraints,
     /// An implicit step of a body; of its own, the vectors of Newton's method.
     Newton,
     /// What a model computes once for all products of a linear solve.
@@ -25,6 +27,8 @@ pub enum Stage {
     LinearSolve,
     /// Products with the matrix, by the model of this name or the assembled matrix.
     Products(&'static str),
+    /// Bodies that answer statically, put to where they rest.
+    Response,
     /// Instruments that remove cells.
     Cutting,
 }

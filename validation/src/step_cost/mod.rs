@@ -6,7 +6,8 @@ use viscera::body::Body;
 use viscera::dynamics::implicit::Implicit;
 use viscera::material::{LinearElastic, NeoHookean, StVenantKirchhoff, StableNeoHookean, Tissue};
 use viscera::model::{
-    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, StiffnessWarping, TensorMass,
+    TotalLagrangian,
 };
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep, World, WorldConfig};
@@ -80,7 +81,7 @@ pub fn study(size: Size) -> Result<StepCost, ValidationError> {
                 let mesh = cells.fill([across; 3], [0.1; 3]);
                 let count = mesh.cell_count();
                 let body = Body::new(mesh, 1000.0).boxed_model(recipe()?).fix(plane(2, 0.0));
-                Ok((count, time_of_step(body, motion)?))
+                Ok((count, time_of_step::<f32>(body, motion)?))
             };
             Ok(Cost { name, times: grids.iter().map(time).collect::<Result<_, ValidationError>>()? })
         };
@@ -89,13 +90,21 @@ pub fn study(size: Size) -> Result<StepCost, ValidationError> {
     Ok(StepCost { explicit: all(Motion::Explicit)?, implicit: all(Motion::Implicit)? })
 }
 
-/// The best of several steps in single precision [ms]; of explicit ones, per sub-step.
-fn time_of_step(body: Body, motion: Motion) -> Result<f64, ValidationError> {
+/// Time of an explicit sub-step of a body under its weight, the best of several [ms].
+///
+/// # Errors
+/// [`ValidationError`] where the body makes no sense or a step fails.
+pub fn time_of_substep<T: Precision>(body: Body) -> Result<f64, ValidationError> {
+    time_of_step::<T>(body, Motion::Explicit)
+}
+
+/// The best of several steps [ms]; of explicit ones, per sub-step.
+fn time_of_step<T: Precision>(body: Body, motion: Motion) -> Result<f64, ValidationError> {
     let integrator = match motion {
         Motion::Explicit => Integrator::Explicit(Substep::Automatic),
         Motion::Implicit => Integrator::Implicit(Implicit { linear: Stop::Iterations(25), ..Implicit::default() }),
     };
-    let mut world = World::<f32>::new(WorldConfig { step: 0.01, integrator, ..WorldConfig::default() })?;
+    let mut world = World::<T>::new(WorldConfig { step: 0.01, integrator, ..WorldConfig::default() })?;
     world.add(body)?;
     let mut best = f64::MAX;
     for _ in 0..6 {

@@ -30,9 +30,9 @@ impl Combination {
         pairs.flat_map(|(model, law)| [Cells::Six, Cells::Hexahedra].map(|cells| Self { model, law, cells }))
     }
 
-    /// Those that the registry says work.
+    /// Those that the registry says work, and whose bodies move.
     pub(super) fn able() -> impl Iterator<Item = Self> {
-        Self::all().filter(|combination| combination.is_able())
+        Self::all().filter(|combination| combination.is_able() && combination.model.moves())
     }
 
     /// Whether the registry says that it works.
@@ -50,9 +50,9 @@ impl Combination {
         format!("{} of {}{cells}", self.model, self.law)
     }
 
-    /// Whether the tissue looks the same in a mirror: turned inside out, it is as content as before.
+    /// Whether the tissue looks the same in a mirror: turned inside out, it is as content as before. So are springs.
     pub fn is_blind_to_reflections(self) -> bool {
-        self.law.is_blind_to_reflections() && self.claims().objective
+        self.model == ModelKind::MassSpring || self.law.is_blind_to_reflections() && self.claims().objective
     }
 
     /// A body of tissue of this stiffness [Pa] and density [kg/m³], whatever the units.
@@ -159,7 +159,7 @@ impl Method {
     fn implicit_settings(self) -> Option<Implicit> {
         match self.integrator {
             Integrator::Implicit(settings) => Some(settings),
-            Integrator::Explicit(_) => None,
+            Integrator::Explicit(_) | Integrator::QuasiStatic(_) => None,
         }
     }
 
@@ -180,6 +180,7 @@ impl Method {
 pub(super) fn refusal(error: &ValidationError) -> Option<&'static str> {
     match error {
         ValidationError::World(WorldError::NoMeanForces { .. }) => Some("no mean forces"),
+        ValidationError::World(WorldError::ModelNeedsExplicit { .. }) => Some("implicit steps not for the model"),
         ValidationError::World(WorldError::LinearisedEnergyMomentum) => Some("linearised energy–momentum"),
         ValidationError::World(WorldError::Body(BodyError::Model { source, .. })) => match source {
             ModelError::UnsupportedLaw { .. } => Some("law not supported"),

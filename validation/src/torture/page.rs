@@ -62,7 +62,7 @@ impl Torture {
             let count = |good: &dyn Fn(&Trial) -> bool| of.iter().filter(|trial| good(trial)).count().to_string();
             let refused = |trial: &Trial| matches!(trial.outcome, Outcome::Refused(_));
             let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none();
-            let conserving = of.iter().filter(|trial| trial.case.combination.claims().conservative);
+            let conserving = of.iter().filter(|trial| trial.case.has_energy());
             let (gain, peak) = conserving
                 .fold((0.0, 0.0), |(gain, peak): (f64, f64), trial| (gain.max(trial.gain), peak.max(trial.peak)));
             methods.push(vec![
@@ -111,7 +111,7 @@ impl Torture {
                 "Which shapes come back, in backward Euler steps, linearised and in full, and in explicit ones; held and free. \
                  M: cannot, the law is blind to reflections (take `stable-neo-hookean`, `neo-hookean`, or the model \
                  `corotational`). S: cannot by symmetry, no direction out of a point or a line is better than another. T: takes \
-                 rotations for strain, and comes to rest turned. Where nothing of this is in the way: E, at rest in another \
+                 rotations for strain, and comes to rest turned. W: nodes that remember their place may have it in a twist. Where nothing of this is in the way: E, at rest in another \
                  shape without an inverted cell; I, at rest with inverted cells; +, not at rest yet; U, a step was undone.",
             )
             .table(self.shapes())
@@ -298,6 +298,7 @@ impl Trial {
             (_, Some(Obstacle::Mirror)) => "blind to reflections: take stable-neo-hookean",
             (_, Some(Obstacle::Symmetry)) => "no direction is better than another",
             (_, Some(Obstacle::Turned)) => "takes rotations for strain",
+            (_, Some(Obstacle::Twist)) => "its places are found in a twist too",
         }
     }
 
@@ -310,6 +311,7 @@ impl Trial {
             (_, Some(Obstacle::Mirror)) => "M",
             (_, Some(Obstacle::Symmetry)) => "S",
             (_, Some(Obstacle::Turned)) => "T",
+            (_, Some(Obstacle::Twist)) => "W",
             (Outcome::Inverted(_), None) => "I",
             (Outcome::Elsewhere, None) => "E",
             (Outcome::Moving, None) => "+",

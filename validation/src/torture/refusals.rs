@@ -1,5 +1,6 @@
 //! What the engine does not compute, and whether it says so.
 
+use viscera::mesh::Region;
 use viscera::world::{World, WorldConfig};
 
 use super::combination::{Combination, Method, Stiffness, refusal};
@@ -37,6 +38,8 @@ pub(super) fn study() -> Result<Vec<Refusal>, ValidationError> {
 
 fn build(combination: Combination, method: Method) -> Result<(), ValidationError> {
     let mut world = World::<f64>::new(WorldConfig { integrator: method.integrator, ..WorldConfig::default() })?;
-    world.add(combination.body(combination.cells.fill([1; 3], [EDGE; 3]), Stiffness::SOFT, 1000.0)?)?;
+    let body = combination.body(combination.cells.fill([1; 3], [EDGE; 3]), Stiffness::SOFT, 1000.0)?;
+    // What rests at every step has to be held.
+    world.add(if combination.model.moves() { body } else { body.fix(Region::Named("z-min".into())) })?;
     Ok(())
 }

@@ -187,5 +187,7 @@ pub(super) fn undone(error: &StepError) -> &'static str {
         StepError::TooStiff { .. } => "too stiff",
         StepError::NotConverged { .. } => "not converged",
         StepError::UnstableSubstep { .. } => "sub-step too long",
+        StepError::VolumeNotKept { .. } => "volume not kept",
+        StepError::NoEquilibrium { .. } => "no equilibrium",
     }
 }

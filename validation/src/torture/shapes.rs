@@ -95,12 +95,15 @@ pub enum Obstacle {
     Symmetry,
     /// A free body of a law that takes rotations for strain: it comes to rest turned, and larger.
     Turned,
+    /// Nodes that remember their place among their neighbours, in such disorder: it may end in a twist, in which each has it.
+    Twist,
 }
 
 impl Case {
-    /// Whether the forces have a potential, so that energy means something.
+    /// Whether the forces have a potential, so that energy means something. That of shape memory jumps where neighbours are turned
+    /// inside out.
     pub fn has_energy(&self) -> bool {
-        self.combination.claims().conservative
+        self.combination.claims().conservative && self.combination.model != ModelKind::ShapeMemory
     }
 
     /// What is in the way of the rest shape; nothing where it has to come back.
@@ -110,6 +113,9 @@ impl Case {
             return Some(Obstacle::Mirror);
         }
         let objective = self.combination.claims().objective;
+        if self.combination.model == ModelKind::ShapeMemory {
+            return Some(Obstacle::Twist);
+        }
         // Models that take a rotation out have one for null deformation gradients too.
         let turns = matches!(self.combination.model, ModelKind::Corotational | ModelKind::StiffnessWarping);
         match self.shape {

@@ -7,6 +7,7 @@
 mod beads;
 mod variant;
 
+use std::path::Path;
 use std::time::Instant;
 
 use viscera::body::Body;
@@ -95,12 +96,20 @@ impl Deviation {
 /// # Errors
 /// [`ValidationError`] where the measured beads cannot be read, or a plain solve fails.
 pub fn study(settings: &Settings) -> Result<TruthCube, ValidationError> {
-    let measured = settings.measured.as_deref().map(beads::read).transpose()?;
     let full = settings.size == Size::Full;
+    study_on(if full { &[8, 10] } else { &[6] }, full, settings.measured.as_deref())
+}
+
+/// The same with so many cells to an edge, by every variant or by those that a test has time for.
+///
+/// # Errors
+/// As [`study`].
+pub fn study_on(meshes: &[usize], every_variant: bool, measured: Option<&Path>) -> Result<TruthCube, ValidationError> {
+    let measured = measured.map(beads::read).transpose()?;
     let case = read(TRUTH_CUBE);
     let mut rows = Vec::new();
-    for cells in if full { vec![8, 10] } else { vec![6] } {
-        for variant in Variant::all(full) {
+    for &cells in meshes {
+        for variant in Variant::all(every_variant) {
             let step = step_time(&variant, cells)?;
             for state in 0..STRAINS.len() {
                 let expected = &list(&case["converged_reference"]["glued_neohooke"])[state];

@@ -102,6 +102,15 @@ pub(crate) enum ShapeCommand {
         #[arg(long)]
         cells: Option<usize>,
     },
+    /// A trunk, with the regions abdomen, thorax, diaphragm, pelvis, spine, belly and ribs-1, ribs-2, …
+    Trunk {
+        /// Height from the pelvis to the shoulders.
+        #[arg(long, value_parser = length, default_value = "45 cm")]
+        height: f64,
+        /// Edge length of the tetrahedra, about.
+        #[arg(long, value_parser = length)]
+        edge: f64,
+    },
 }
 
 /// What becomes of a cube of a box.

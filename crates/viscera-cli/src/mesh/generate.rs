@@ -53,6 +53,10 @@ fn make(shape: &ShapeCommand) -> Result<VolumeMesh, Failure> {
             };
             TetMesh::tube(inner_radius, outer_radius, height, divisions).map_err(refuse)?.into()
         }
+        ShapeCommand::Trunk { height, edge } => {
+            allow(1.7 * (height / edge).powi(3))?;
+            TetMesh::trunk(height, edge).map_err(refuse)?.into()
+        }
         ShapeCommand::Liver { length, edge, cells } => {
             let edge = match (edge, cells) {
                 (Some(edge), _) => edge,

@@ -55,6 +55,9 @@ fn why(profile: &Profile, cost: Cost) -> Vec<String> {
             Stage::Linearisation | Stage::Newton => {
                 vec!["Newton's method is at work: a linearised step (`integrator.newton = \"linearised\"`) has one iteration.".into()]
             }
+            Stage::Response => {
+                vec!["It goes with the nodes that tools touch and hold, times all nodes: smaller jaws, or longer edges, cost less.".into()]
+            }
             Stage::Cutting => {
                 vec!["Instruments look at every cell of every body in each step that they are at work: switch them off in time.".into()]
             }

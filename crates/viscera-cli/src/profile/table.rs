@@ -87,11 +87,13 @@ pub(super) fn name(cost: Cost) -> String {
             Stage::Forces(model) => format!("forces: {model}"),
             Stage::Loads => "gravity and loads".into(),
             Stage::KickAndDrift => "kick and drift".into(),
+            Stage::Constraints => "constraints".into(),
             Stage::Newton => "vectors of the step".into(),
             Stage::Linearisation => "linearisation".into(),
             Stage::Preconditioner => "preconditioner".into(),
             Stage::LinearSolve => "vectors of the conjugate gradient".into(),
             Stage::Products(model) => format!("products: {model}"),
+            Stage::Response => "static answers".into(),
             Stage::Cutting => "cutting".into(),
         },
     }

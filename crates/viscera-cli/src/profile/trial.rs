@@ -86,7 +86,7 @@ fn trials(scene: &SceneFile) -> Vec<Trial> {
     if scene.integrator.kind == IntegratorName::Explicit {
         let implicit = r#"{ kind = "backward-euler", linear = { iterations = 25 } }"#;
         try_out("implicit steps of 25 iterations", key("integrator", implicit));
-    } else {
+    } else if scene.integrator.kind != IntegratorName::QuasiStatic {
         try_out("explicit steps", key("integrator", r#"{ kind = "explicit" }"#));
         let settings = |rest: &str| format!(r#"{{ kind = "{}", {rest} }}"#, scene.integrator.kind.name());
         let cut_short = settings(r#"newton = "linearised", linear = { iterations = 25 }"#);
@@ -114,7 +114,10 @@ fn trials(scene: &SceneFile) -> Vec<Trial> {
         MeshFile::File(_) | MeshFile::Generate(GenerateFile::Box { .. }) => None,
         MeshFile::Surface(SurfaceFile { edge, .. })
         | MeshFile::Generate(
-            GenerateFile::Cylinder { edge, .. } | GenerateFile::Tube { edge, .. } | GenerateFile::Liver { edge, .. },
+            GenerateFile::Cylinder { edge, .. }
+            | GenerateFile::Tube { edge, .. }
+            | GenerateFile::Liver { edge, .. }
+            | GenerateFile::Trunk { edge, .. },
         ) => Some(("mesh.edge", format!("{:.4} mm", 1.25e3 * edge.0))),
     };
     try_out("edges a quarter longer", of_bodies(&coarser));

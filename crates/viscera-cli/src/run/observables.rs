@@ -51,6 +51,7 @@ fn body_columns(of: &BodyObservables) -> Vec<(&'static str, f64)> {
         ("mass [kg]", of.mass),
         ("volume [m^3]", of.volume),
         ("volume variation [1]", of.volume_variation),
+        ("volume error [1]", of.volume_error),
         ("max displacement [m]", of.max_displacement),
     ];
     columns.extend(vector(["momentum x [kg m/s]", "momentum y [kg m/s]", "momentum z [kg m/s]"], of.momentum));
@@ -70,6 +71,7 @@ fn body_columns(of: &BodyObservables) -> Vec<(&'static str, f64)> {
         ("non-linear nodes [1]", of.nonlinear_nodes as f64),
         ("at rest [1]", f64::from(u8::from(of.at_rest))),
     ]);
+    columns.extend(of.interface_residual.map(|residual| ("interface residual [1]", residual)));
     columns
 }
 

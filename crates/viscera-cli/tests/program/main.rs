@@ -2,11 +2,17 @@
 
 mod checkpoints;
 mod full_disks;
+mod guide;
 mod interruption;
 mod measuring;
 mod meshes;
 mod messages;
+mod precompute;
+mod reproducing;
 mod results;
+#[cfg(target_os = "linux")]
+mod serving;
+mod tissues;
 
 use std::fs;
 use std::path::{Path, PathBuf};

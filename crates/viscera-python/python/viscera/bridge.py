@@ -59,7 +59,7 @@ def to_pyvista(mesh: VolumeMesh | SimulatedBody, point_data: dict | None = None,
     """A `pyvista.UnstructuredGrid` of a mesh at rest, or of a body as it is now without the cells that are cut away."""
     pyvista = _need("pyvista", "mesh")
     shape = mesh.mesh if isinstance(mesh, SimulatedBody) else mesh
-    left = ~mesh.removed if isinstance(mesh, SimulatedBody) else np.ones(len(shape), dtype=bool)
+    left = ~mesh.removed if isinstance(mesh, SimulatedBody) else np.full(len(shape), True)
     points = mesh.positions if isinstance(mesh, SimulatedBody) else mesh.nodes
     cells = shape.cells[left].astype(np.int64)
     kind = _VTK_TETRAHEDRON if isinstance(shape, TetMesh) else _VTK_HEXAHEDRON
@@ -99,14 +99,14 @@ def plot(body: SimulatedBody | VolumeMesh, field=None, *, title: str | None = No
     With `path` the picture is written there as well.
     """
     _need("matplotlib", "plot")
-    from matplotlib import cm, colors
-    from matplotlib import pyplot
+    from matplotlib import cm, colormaps, colors, pyplot
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    simulated = isinstance(body, SimulatedBody)
-    shape = body.mesh if simulated else body
-    points = np.asarray(body.positions if simulated else shape.nodes, dtype=float)
-    triangles = body.surface()[0] if simulated else shape.surface().triangles
+    shape: VolumeMesh
+    if isinstance(body, SimulatedBody):
+        shape, points, triangles = body.mesh, np.asarray(body.positions, dtype=float), body.surface()[0]
+    else:
+        shape, points, triangles = body, body.nodes, body.surface().triangles
     values, unit = _field(body, shape, field)
     if axes is None:
         axes = pyplot.figure(figsize=(7, 6)).add_subplot(projection="3d")
@@ -119,7 +119,7 @@ def plot(body: SimulatedBody | VolumeMesh, field=None, *, title: str | None = No
     else:
         on_faces = values[triangles].mean(axis=1)
         scale = colors.Normalize(float(values.min()), float(values.max()))
-        faces = cm.viridis(scale(on_faces))[:, :3] * (0.6 + 0.4 * light[:, None])
+        faces = colormaps["viridis"](scale(on_faces))[:, :3] * (0.6 + 0.4 * light[:, None])
         axes.figure.colorbar(cm.ScalarMappable(scale, "viridis"), ax=axes, shrink=0.6, label=label or unit)
     # y points up: matplotlib's third axis does.
     axes.add_collection3d(Poly3DCollection(corners[:, :, [0, 2, 1]], facecolors=np.clip(faces, 0, 1), edgecolors="none"))

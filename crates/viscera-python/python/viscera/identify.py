@@ -3,10 +3,10 @@
 Gauss–Newton (Levenberg–Marquardt) with exact gradients: one load costs its equilibrium and one factorisation, a motion one linear
 solve with as many right-hand sides as there are parameters in each of its steps. At an equilibrium f(x, p) = f_ext,
 
-    K dx/dp = −∂f/∂p,
+    K dx/dp = −∂f/∂p + ∂f_ext/∂p,
 
 and a step of backward Euler has (1/dt² + γ/dt) M + K in place of K, and what the step before hands on at its right. ∂f/∂p at fixed
-positions is a central difference of the model's forces, which are smooth in the parameters and cost no solve.
+positions is a central difference of the forces, which are smooth in the parameters and cost no solve.
 
     body = lambda p: viscera.Body(mesh, 1000, model=viscera.TotalLagrangian(
         viscera.NeoHookean.from_young_poisson(**p)), fix="z-min")
@@ -21,6 +21,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ._viscera import Body, Error, Implicit, World
 
@@ -31,14 +32,43 @@ Parameters = Mapping[str, float]
 BodyOf = Callable[[Parameters], Body]
 
 
+def _ends(body: BodyOf, p: Parameters, name: str, of: Callable[[Body], np.ndarray]) -> np.ndarray:
+    """Central difference of what is computed of the body, by one of its parameters."""
+    step = _VARIATION * max(abs(p[name]), _VARIATION)
+    ends = [of(body({**p, name: p[name] + sign * step})) for sign in (1.0, -1.0)]
+    return (ends[0] - ends[1]) / (2 * step)
+
+
 def _varied_forces(body: BodyOf, p: Parameters, x) -> np.ndarray:
     """∂f_int/∂p at positions x [N per unit of the parameter]; shape (parameters, n, 3)."""
-    slopes = []
-    for name, value in p.items():
-        step = _VARIATION * max(abs(value), _VARIATION)
-        ends = [_simulate(body({**p, name: value + sign * step})).forces_at(x) for sign in (1.0, -1.0)]
-        slopes.append((ends[0] - ends[1]) / (2 * step))
-    return np.array(slopes)
+    return np.array([_ends(body, p, name, lambda made: _simulate(made).forces_at(x)) for name in p])
+
+
+def _varied_residuals(body: BodyOf, p: Parameters, x, gravity) -> np.ndarray:
+    """The same of f_int − f_ext, gravity and loads included."""
+
+    def residual(made: Body) -> np.ndarray:
+        simulated = _simulate(made, gravity=gravity)
+        simulated.positions = x
+        return simulated.forces_at(x) - simulated.external_forces
+
+    return np.array([_ends(body, p, name, residual) for name in p])
+
+
+def _varied_ways(body: BodyOf, p: Parameters, gravity, driven) -> np.ndarray:
+    """A displacement for each parameter that moves what is driven as the parameter does, and the rest somehow; shape (parameters, n, 3).
+
+    One linear solve puts what is driven into its place. Where the parameter moves nothing of it, nothing is moved.
+    """
+
+    def placed(made: Body) -> np.ndarray:
+        simulated = _simulate(made, gravity=gravity)
+        simulated.settle(small_strain=True)
+        return simulated.positions
+
+    ways = np.array([_ends(body, p, name, placed) for name in p])
+    moves = np.abs(ways[:, driven]).max(axis=(1, 2), initial=0.0) > 1e-9 * np.abs(ways).max(axis=(1, 2), initial=0.0)
+    return ways * moves[:, None, None]
 
 
 def _simulate(body: Body, **world):
@@ -50,7 +80,8 @@ def _simulate(body: Body, **world):
 class Equilibrium:
     """A body at rest under a load, of which positions, or the force on a region, or both were measured.
 
-    ``body``: makes the body from a dict of parameters. ``nodes``, ``positions``: which nodes were seen where [m, shape (k, 3)]; NaN
+    ``body``: makes the body from a dict of parameters: of its tissue, its density, its loads, the ways of what is prescribed (of which, where
+    pressures act as well, gradients leave out how these turn). ``nodes``, ``positions``: which nodes were seen where [m, shape (k, 3)]; NaN
     for coordinates that were not. ``points``: instead of nodes, weights of shape (k, n) (a row sums to 1) for places between
     nodes. ``force_on``: nodes of a region on which ``force`` [N, shape (3,)] was measured: what holds the region, so +weight for what
     stands on it. ``deviation`` [m] and ``force_deviation`` [N]: standard deviations of one number; where they are not known, leave
@@ -59,11 +90,11 @@ class Equilibrium:
 
     body: BodyOf
     gravity: Sequence[float] = (0.0, -9.81, 0.0)
-    nodes: Sequence[int] | None = None
+    nodes: ArrayLike | None = None
     points: np.ndarray | None = None
     positions: np.ndarray | None = None
-    force_on: Sequence[int] | None = None
-    force: Sequence[float] | None = None
+    force_on: ArrayLike | None = None
+    force: ArrayLike | None = None
     deviation: float = 1.0
     force_deviation: float = 1.0
     solver: str = "direct"
@@ -90,10 +121,13 @@ class Equilibrium:
         body.settle(solver=self.solver)
         x = body.positions
         self._start = x
-        moved = None
+        slopes = moved = np.zeros((0, *x.shape))
         if gradients:
-            slopes = _varied_forces(self.body, p, x)
-            moved = body.respond(-slopes, solver=self.solver)
+            driven = np.isin(body.motions, ("prescribed", "guided"))
+            slopes = _varied_residuals(self.body, p, x, self.gravity)
+            ways = _varied_ways(self.body, p, self.gravity, driven) if driven.any() else np.zeros_like(slopes)
+            pulled = slopes + np.array([body.product_at(x, way) if way.any() else way for way in ways])
+            moved = ways + body.respond(-pulled, solver=self.solver)
         rows, columns = [], []
         if self.positions is not None:
             known = np.isfinite(self.positions)
@@ -114,14 +148,14 @@ class Equilibrium:
 class Motion:
     """A body in motion, of which positions were measured at some of its steps.
 
-    ``body``: makes the body from a dict of parameters; without stiffness damping. It starts at rest, or at ``start`` with
+    ``body``: makes the body from a dict of parameters, which are of its law alone; without stiffness damping. It starts at rest, or at ``start`` with
     ``velocity`` (shape (n, 3)), and moves by backward Euler steps of ``step`` [s], solved in full. ``seen``: for a step's number, from
     1, the positions of ``nodes`` [m, shape (k, 3)]. ``damping``: the body's rate [1/s], as the body has it.
     """
 
     body: BodyOf
     step: float
-    nodes: Sequence[int]
+    nodes: ArrayLike
     seen: Mapping[int, np.ndarray]
     gravity: Sequence[float] = (0.0, -9.81, 0.0)
     damping: float = 0.0

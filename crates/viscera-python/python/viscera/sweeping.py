@@ -25,9 +25,11 @@ class Table:
         return list(dict.fromkeys(name for row in self.rows for name in row))
 
     def __len__(self) -> int:
+        """How many cases there are."""
         return len(self.rows)
 
     def __getitem__(self, column: str) -> list:
+        """What stands in a column, None in rows that do not have it."""
         return [row.get(column) for row in self.rows]
 
     def to_pandas(self):
@@ -37,10 +39,11 @@ class Table:
         return pandas.DataFrame(self.rows, columns=self.columns)
 
     def to_arrow(self):
-        """The table as a `pyarrow.Table`."""
+        """The table as a `pyarrow.Table`: `time` as float64 and `error` as string whatever is in them, the others by what is in them."""
         import pyarrow
 
-        return pyarrow.table({column: self[column] for column in self.columns})
+        kinds = {"time": pyarrow.float64(), "error": pyarrow.string()}
+        return pyarrow.table({column: pyarrow.array(self[column], kinds.get(column)) for column in self.columns})
 
     def to_parquet(self, path) -> None:
         """Writes the table as a Parquet file."""
@@ -63,7 +66,7 @@ class _Case:
     """One run: a scene, and what is changed in it. It goes to workers as it is."""
 
     text: str
-    folder: str
+    folder: Path
     changes: tuple[tuple[str, Any], ...]
     measure: Callable[[World], Mapping[str, Any]] | None
 
@@ -93,7 +96,7 @@ def _run(case: _Case) -> dict[str, Any]:
 
 def observables(world: World) -> dict[str, Any]:
     """What a sweep measures by default: numbers of every body and instrument at the end, by name."""
-    row = {}
+    row: dict[str, Any] = {}
     for name, body in world.bodies.items():
         seen = body.observe()
         row |= {
@@ -108,8 +111,7 @@ def observables(world: World) -> dict[str, Any]:
             f"{name}: inverted cells [1]": seen.inverted_cells,
         }
     for name, tool in world.instruments.items():
-        seen = tool.observe()
-        row |= {f"{name}: force {axis} [N]": value for axis, value in zip("xyz", seen.force)}
+        row |= {f"{name}: force {axis} [N]": value for axis, value in zip("xyz", tool.observe().force)}
     return row
 
 

@@ -1,52 +1,97 @@
-"""Moduli of tissue as they were measured, each with its source: starting points, not properties of your patient."""
+"""Tissues as they were measured, each number with its source: starting points, not properties of your patient."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ._viscera import Lame, Law, NeoHookean
+from ._viscera import Lame, Law, NeoHookean, TransverseStVenantKirchhoff, tissue_presets
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number from the literature, in SI."""
+
+    #: What a preset takes.
+    value: float
+    #: The least and the largest that the sources report.
+    range: tuple[float, float]
+    #: Publication, and what was measured in it.
+    source: str
+    #: Whose tissue it was.
+    species: str
+    #: In what state it was, and how it was measured.
+    state: str
+    #: Why the number is weak, where it is.
+    weakness: str | None
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A tissue: small-strain stiffness and density, and where they come from."""
+    """A tissue: small-strain stiffness and density, and where they come from. As the engine and scenes have it."""
 
     name: str
-    #: Young's modulus [Pa].
-    young: float
-    #: Poisson's ratio; soft tissue is nearly incompressible, and 0.49 is what elements bear that do not lock.
-    poisson: float
-    #: Density [kg/m³].
-    density: float
-    #: Publication, and what was measured in it.
-    source: str
+    #: What it is, for people.
+    title: str
+    #: Name of the law that fits it without fibres.
+    kind: str
+    #: Every number with its range, source, species, state and weakness: "young", "poisson", "density", "along".
+    measured: dict[str, Measured]
+    #: Where fibres run, where the tissue has some.
+    course: str | None
+    #: λ and μ [Pa] of the matrix between the fibres, and how many times larger they are along them.
+    fibred: tuple[float, float, float] | None
 
-    def law(self, kind: type[Law] = NeoHookean) -> Law:
-        """A law of λ and μ of this stiffness, neo-Hookean unless another class is given."""
+    @property
+    def young(self) -> float:
+        """Young's modulus of small strains [Pa]; across the fibres, where there are some."""
+        return self.measured["young"].value
+
+    @property
+    def along(self) -> float | None:
+        """Young's modulus along the fibres [Pa], where there are some."""
+        return self.measured["along"].value if "along" in self.measured else None
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio."""
+        return self.measured["poisson"].value
+
+    @property
+    def density(self) -> float:
+        """Density [kg/m³]."""
+        return self.measured["density"].value
+
+    @property
+    def source(self) -> str:
+        """Where Young's modulus comes from."""
+        return self.measured["young"].source
+
+    def law(self, kind: Callable[[Lame], Law] = NeoHookean) -> Law:
+        """A law of λ and μ of this stiffness, neo-Hookean unless another class is given; without fibres."""
         return kind(Lame.from_young_poisson(young=self.young, poisson=self.poisson))
 
+    def law_along(self, direction: Sequence[float]) -> Law:
+        """St Venant–Kirchhoff tissue with its fibres along `direction`; ValueError where it has none."""
+        if self.fibred is None:
+            raise ValueError(f"{self.name} has no fibres: take law() for it")
+        lambda_, mu, factor = self.fibred
+        return TransverseStVenantKirchhoff(Lame(lambda_, mu), direction, Lame(factor * lambda_, factor * mu))
 
-TISSUES = {
-    preset.name: preset
-    for preset in (
-        Preset(
-            "liver", 6.27e3, 0.49, 1060.0,
-            "Journal of Magnetic Resonance Imaging 39 (2014) 1: 41 healthy volunteers, shear stiffness 2.09 ± 0.22 kPa by magnetic "
-            "resonance elastography in vivo; E = 3 μ",
-        ),
-        Preset(
-            "breast-fat", 5.55e3, 0.49, 950.0,
-            "Karakaş, Poçan, Medical Science Monitor 32 (2026) e952112: shear stiffness 1.85 ± 0.32 kPa by magnetic resonance "
-            "elastography in vivo; E = 3 μ",
-        ),
-        Preset(
-            "breast-gland", 8.85e3, 0.49, 1040.0,
-            "Karakaş, Poçan, Medical Science Monitor 32 (2026) e952112: shear stiffness 2.95 ± 0.43 kPa by magnetic resonance "
-            "elastography in vivo; E = 3 μ",
-        ),
-        Preset(
-            "truth-cube", 14.9e3, 0.499, 1000.0,
-            "Kerdok et al., Medical Image Analysis 7 (2003) 283: silicone rubber of the truth cube, E = 14.9 kPa, ν = 0.499",
-        ),
-    )
-}
+
+def _preset(entry: dict) -> Preset:
+    def measured(number: dict) -> Measured:
+        return Measured(**{**number, "range": tuple(number["range"])})
+
+    numbers = {key: measured(entry[key]) for key in ("young", "poisson", "density")}
+    fibre = entry["fibre"]
+    if fibre is not None:
+        numbers["along"] = measured(fibre["young"])
+    course = None if fibre is None else fibre["course"]
+    fibred = None if entry["fibred"] is None else tuple(entry["fibred"])
+    return Preset(entry["name"], entry["title"], entry["law"], numbers, course, fibred)
+
+
+#: Every tissue by name, as scenes have them.
+TISSUES = {preset.name: preset for preset in map(_preset, json.loads(tissue_presets()))}

@@ -1,8 +1,9 @@
-use viscera::body::{Body, BodyError, Load, LoosePieces};
+use viscera::body::{Body, BodyError, Load, LoosePieces, Muscle};
 use viscera::curve::Curve;
 use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
 use viscera::model::ModelError;
+use viscera::model::precomputed::ResponsesError;
 
 use super::curve::curve;
 use super::law::{densities, tissue};
@@ -58,6 +59,22 @@ pub(super) fn body(
             Some(way) => body.prescribe_along(region, slide.normal, curve(way, &site.key("displacement"))?),
         };
     }
+    for (index, volume) in file.exact_volume.iter().enumerate() {
+        let site = site.key("exact-volume").key(index).key("region");
+        body = body.keep_volume_exactly(&volume.name, region(&volume.region, Wanted::Cells, &mesh, &site)?);
+    }
+    for (index, part) in file.rigid.iter().enumerate() {
+        body = body.rigid(region(part, Wanted::Nodes, &mesh, &site.key("rigid").key(index))?);
+    }
+    for (index, muscle) in file.muscle.iter().enumerate() {
+        let site = site.key("muscle").key(index);
+        body = body.muscle(Muscle {
+            region: region(&muscle.region, Wanted::Nodes, &mesh, &site.key("region"))?,
+            stiffness: muscle.stiffness.0,
+            contraction: muscle.contraction,
+            activation: curve(&muscle.activation, &site.key("activation"))?,
+        });
+    }
     for (index, load) in file.load.iter().enumerate() {
         body = body.load(self::load(load, &mesh, &site.key("load").key(index))?);
     }
@@ -103,8 +120,19 @@ pub(super) fn blame(error: &BodyError, site: &Site) -> SceneErrors {
         | BodyError::Mesh { .. }
         | BodyError::IsolatedNode { .. } => site.key("mesh"),
         BodyError::Model { source: ModelError::Material(_), .. } => site.key("law"),
-        BodyError::Model { .. } | BodyError::NoModel { .. } => site.key("model"),
+        BodyError::Model { source: ModelError::Responses(ResponsesError::Stale { .. }), .. } => {
+            site.key("model").key("responses")
+        }
+        BodyError::Model { source: ModelError::Responses(ResponsesError::NothingHolds), .. } => site.key("fix"),
+        BodyError::Model { source: ModelError::Region(_), .. } => site.key("model").key("dynamic"),
+        BodyError::Model { .. } | BodyError::NoModel { .. } | BodyError::LinearModel { .. } => site.key("model"),
         BodyError::KeepVolumeOnHexahedra { .. } => site.key("model").key("keep-volume"),
+        BodyError::HeldRigidPart { .. }
+        | BodyError::OverlappingRigidParts { .. }
+        | BodyError::RigidPartInLine { .. } => site.key("rigid"),
+        BodyError::OutOfRange { name, .. } if name.starts_with("muscle") => site.key("muscle"),
+        BodyError::Region { purpose: "a muscle", .. } => site.key("muscle"),
+        BodyError::OutOfRange { name: "keep-volume", .. } => site.key("model").key("keep-volume"),
         BodyError::OutOfRange { name, .. } => site.key(name.replace(' ', "-")),
         BodyError::WrongDensityCount { .. } => site.key("density"),
         BodyError::Region { .. } => site.clone(),

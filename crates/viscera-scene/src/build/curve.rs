@@ -46,6 +46,17 @@ macro_rules! written {
 
 written!(Length, Pressure);
 
+impl Written for f64 {
+    type Plain = Self;
+    const DIMENSIONS: &'static [Option<&'static Dimension>] = &[Some(&TIME), None];
+    fn plain(self) -> Self {
+        self
+    }
+    fn from_row(row: &[f64]) -> Self {
+        row[1]
+    }
+}
+
 pub(super) fn curve<V: Written>(file: &CurveFile<V>, site: &Site) -> Result<Curve<V::Plain>, SceneErrors> {
     let points = match file {
         CurveFile::Constant(value) => return Ok(Curve::constant(value.plain())),

@@ -26,7 +26,7 @@ pub(super) fn add<T: Scalar>(
                 path: curve(path, &way)?,
                 mount: mount(direction, *roll, trocar),
                 radius: radius.0,
-                close: close.0,
+                close: close.map_or(f64::INFINITY, |close| close.0),
                 open: open.map(|open| open.0),
                 jaws: jaws.as_ref().map(self::jaws),
                 shaft: shaft.as_ref().map(self::shaft),
@@ -36,11 +36,15 @@ pub(super) fn add<T: Scalar>(
         }
         InstrumentFile::Cautery { path, radius, on, off, power, heat, shaft, friction, direction, trocar } => {
             let plain = Cautery::default();
+            if let (None, Some(_)) = (on, off) {
+                let help = "say when it is switched on, such as `on = \"0 s\"`";
+                return Err(site.key("off").error("nothing switches the current on before it is switched off", help));
+            }
             world.add_instrument(Cautery {
                 path: curve(path, &way)?,
                 mount: mount(direction, None, trocar),
                 radius: radius.0,
-                on: (on.map_or(0.0, |on| on.0), off.map_or(f64::INFINITY, |off| off.0)),
+                on: (on.map_or(plain.on.0, |on| on.0), off.map_or(plain.on.1, |off| off.0)),
                 power: power.map_or(plain.power, |power| power.0),
                 heat: heat.map_or(plain.heat, |heat| heat.0),
                 shaft: shaft.as_ref().map(self::shaft),
@@ -52,6 +56,10 @@ pub(super) fn add<T: Scalar>(
         WorldError::Instrument(InstrumentError::OutOfRange { name, value, range, .. }) => {
             key(site, name).error(format!("`{name}` is {value}, and must be {range}"), "")
         }
+        WorldError::ToolsNeedMotion => site.error(
+            "the integrator `quasi-static` knows no tools with rigid parts or a bounded grip",
+            "take another integrator, or a grasper with neither jaws nor shaft nor `grip`",
+        ),
         other => site.error(other, ""),
     })
 }

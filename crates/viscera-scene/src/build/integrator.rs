@@ -1,12 +1,13 @@
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
+use viscera::dynamics::quasi_static::QuasiStatic;
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep};
 
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::{
-    IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile, SceneFile,
-    SubstepFile,
+    FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile,
+    SceneFile, SubstepFile,
 };
 
 /// Iterations of the linear solver where the scene gives a tolerance alone.
@@ -16,38 +17,41 @@ const MOST_ITERATIONS: u32 = 2000;
 pub(super) fn integrator(file: &SceneFile, root: &Site) -> Result<Integrator, SceneErrors> {
     let settings = &file.integrator;
     let site = root.key("integrator");
-    let scheme = match settings.kind {
-        IntegratorName::Explicit => None,
-        IntegratorName::BackwardEuler => Some(Scheme::BackwardEuler),
-        IntegratorName::Newmark => Some(newmark(settings)),
-        IntegratorName::Bdf2 => Some(Scheme::Bdf2),
-        IntegratorName::EnergyMomentum => Some(Scheme::EnergyMomentum),
-    };
     if settings.kind != IntegratorName::Newmark {
         only(&site, [("beta", settings.beta.is_some()), ("gamma", settings.gamma.is_some())], "`newmark`")?;
     }
-    match (scheme, file.substep) {
-        (None, substep) => {
-            let of_implicit = [
-                ("newton", settings.newton.is_some()),
-                ("linear", settings.linear.is_some()),
-                ("matrix", settings.matrix.is_some()),
-                ("preconditioner", settings.preconditioner.is_some()),
-            ];
-            only(&site, of_implicit, "`backward-euler`, `newmark`, `bdf2`, `energy-momentum`")?;
-            Ok(Integrator::Explicit(match substep {
+    let implicit_ones = "`backward-euler`, `newmark`, `bdf2`, `energy-momentum`";
+    let of_systems = [
+        ("linear", settings.linear.is_some()),
+        ("matrix", settings.matrix.is_some()),
+        ("preconditioner", settings.preconditioner.is_some()),
+    ];
+    if settings.kind == IntegratorName::Explicit {
+        only(&site, [("newton", settings.newton.is_some())], &format!("{implicit_ones}, `quasi-static`"))?;
+    } else if let SubstepFile::Fixed(_) = file.substep {
+        let message = "`substep` is a setting of the integrator `explicit`";
+        return Err(root
+            .key("substep")
+            .error(message, "the others make each step at once: set `step`, leave this out"));
+    }
+    let scheme = match settings.kind {
+        IntegratorName::Explicit => {
+            only(&site, of_systems, implicit_ones)?;
+            return Ok(Integrator::Explicit(match file.substep {
                 SubstepFile::Automatic(_) => Substep::Automatic,
                 SubstepFile::Fixed(time) => Substep::Fixed(time.0),
-            }))
+            }));
         }
-        (Some(_), SubstepFile::Fixed(_)) => {
-            let message = "`substep` is a setting of the integrator `explicit`";
-            Err(root
-                .key("substep")
-                .error(message, "an implicit one makes each step at once: set `step`, leave this out"))
+        IntegratorName::QuasiStatic => {
+            only(&site, of_systems, implicit_ones)?;
+            return Ok(Integrator::QuasiStatic(quasi_static(settings.newton)));
         }
-        (Some(scheme), SubstepFile::Automatic(_)) => implicit(settings, scheme, &site).map(Integrator::Implicit),
-    }
+        IntegratorName::BackwardEuler => Scheme::BackwardEuler,
+        IntegratorName::Newmark => newmark(settings),
+        IntegratorName::Bdf2 => Scheme::Bdf2,
+        IntegratorName::EnergyMomentum => Scheme::EnergyMomentum,
+    };
+    implicit(settings, scheme, &site).map(Integrator::Implicit)
 }
 
 /// Refuses keys that are given and belong to something else.
@@ -62,6 +66,16 @@ fn only<const N: usize>(site: &Site, keys: [(&str, bool); N], owner: &str) -> Re
 
 fn newmark(file: &IntegratorFile) -> Scheme {
     Scheme::Newmark { beta: file.beta.unwrap_or(0.25), gamma: file.gamma.unwrap_or(0.5) }
+}
+
+fn quasi_static(newton: Option<NewtonFile>) -> QuasiStatic {
+    match newton {
+        None | Some(NewtonFile::Named(NewtonName::Full)) => QuasiStatic::default(),
+        Some(NewtonFile::Named(NewtonName::Linearised)) => QuasiStatic { small_strain: true, ..QuasiStatic::default() },
+        Some(NewtonFile::Full(FullNewtonFile { tolerance, iterations })) => {
+            QuasiStatic { tolerance, iterations: iterations as usize, ..QuasiStatic::default() }
+        }
+    }
 }
 
 fn implicit(file: &IntegratorFile, scheme: Scheme, site: &Site) -> Result<Implicit, SceneErrors> {

@@ -128,6 +128,10 @@ fn generate(shape: &GenerateFile, site: &Site) -> Result<VolumeMesh, SceneErrors
             };
             TetMesh::tube(inner_radius.0, outer_radius.0, height.0, divisions).map_err(refuse)?.into()
         }
+        GenerateFile::Trunk { height, edge } => {
+            allow(1.7 * (height.0 / edge.0).powi(3), &site.key("edge"))?;
+            TetMesh::trunk(height.0, edge.0).map_err(refuse)?.into()
+        }
         GenerateFile::Liver { length, edge } => TetMesh::liver(length.0, edge.0).map_err(refuse)?.into(),
     })
 }

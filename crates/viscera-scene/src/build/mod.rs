@@ -9,6 +9,7 @@ mod integrator;
 mod law;
 mod mesh;
 mod model;
+mod precompute;
 mod region;
 mod site;
 
@@ -22,6 +23,7 @@ use crate::error::SceneErrors;
 use crate::file::{InstrumentFile, SceneFile};
 use crate::scene::Scene;
 pub use mesh::Meshes;
+pub use precompute::BodyResponses;
 use site::Site;
 
 /// A world that is ready to run, and the names that the scene gives to what is in it.
@@ -86,7 +88,7 @@ impl Scene {
                     format!("the longest stable one is {stable:.3e} s; \"auto\" finds it by itself"),
                 ),
                 WorldError::StiffnessDampingNeedsImplicit { .. } => site.key("stiffness-damping").error(
-                    "the integrator `explicit` knows no damping by the stiffness",
+                    format!("the integrator `{}` knows no damping by the stiffness", file.integrator.kind.name()),
                     "take an implicit one, such as `backward-euler`, or `damping`",
                 ),
                 WorldError::NoMeanForces { model, law, .. } => root.key("integrator").key("kind").error(
@@ -94,6 +96,16 @@ impl Scene {
                     "it needs the law `st-venant-kirchhoff` on tetrahedra by the model `total-lagrangian`, without \
                      `keep-volume`",
                 ),
+                WorldError::ModelNeedsExplicit { model, advice, .. } => root.key("integrator").key("kind").error(
+                    format!(
+                        "this integrator cannot step body `{name}`: implicit steps are not for the model `{model}`"
+                    ),
+                    *advice,
+                ),
+                WorldError::FeatureNeedsExplicit { feature, .. } => root
+                    .key("integrator")
+                    .key("kind")
+                    .error(format!("this integrator cannot step body `{name}`: it has {feature}"), "take `explicit`"),
                 _ => site.error(&error, ""),
             })?;
             bodies.insert(name.clone(), id);
@@ -107,11 +119,17 @@ impl Scene {
         let mut instruments = IndexMap::new();
         for (name, described) in &file.instrument {
             let site = root.key("instrument").key(name);
+            let burns = matches!(described, InstrumentFile::Cautery { .. }) && !bodies.is_empty();
+            let whole = |id: &BodyId| {
+                let model = world.body(*id).model();
+                model.info().no_cutting.map(|advice| (model, advice))
+            };
+            if burns && let Some((model, advice)) = bodies.values().map(whole).reduce(Option::and).flatten() {
+                let message = format!("a cautery burns cells away, and the model `{model}` cannot be cut");
+                return Err(site.key("kind").error(message, advice));
+            }
             let can_cut = |id: &BodyId| matches!(world.body(*id).mesh(), VolumeMesh::Tet(_));
-            if matches!(described, InstrumentFile::Cautery { .. })
-                && !bodies.is_empty()
-                && !bodies.values().any(can_cut)
-            {
+            if burns && !bodies.values().any(can_cut) {
                 let message = "a cautery burns tetrahedra away, and all bodies are made of hexahedra";
                 return Err(site.key("kind").error(message, "make the body of tetrahedra, or leave the cautery out"));
             }

@@ -1,10 +1,16 @@
+use std::path::Path;
+use std::sync::Arc;
+
 use viscera::material::Tissue;
 use viscera::mesh::VolumeMesh;
 use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement, Tangent};
+use viscera::model::precomputed::Responses;
 use viscera::model::{
-    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+    Corotational, Hybrid, LinearTensorMass, MassSpring, ModelRecipe, NodallyIntegrated, Precomputed, ShapeMemory,
+    StiffnessWarping, TensorMass, TotalLagrangian,
 };
 
+use super::region::{Wanted, region};
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::{
@@ -37,11 +43,44 @@ pub(super) fn recipe(
             Box::new(model.stabilise.map_or(recipe.clone(), |share| recipe.stabilise(share)))
         }
         ModelName::StiffnessWarping => Box::new(StiffnessWarping::new(tissue)),
+        ModelName::MassSpring => Box::new(MassSpring::new(tissue)),
+        ModelName::ShapeMemory => Box::new(ShapeMemory::new(tissue)),
         ModelName::Corotational => Box::new(corotational(model, tissue)),
         ModelName::TensorMass => {
             let recipe = TensorMass::new(tissue);
             Box::new(model.adaptive.map_or(recipe.clone(), |threshold| recipe.adaptive(threshold.0)))
         }
+        ModelName::Precomputed => {
+            let (recipe, site) = (Precomputed::new(tissue), site.key("model").key("responses"));
+            match &model.responses {
+                Some(path) => Box::new(recipe.responses(Arc::new(responses(path, &site)?))),
+                None => Box::new(recipe),
+            }
+        }
+        ModelName::Hybrid => {
+            let (recipe, site) = (Hybrid::new(tissue), site.key("model").key("dynamic"));
+            match &model.dynamic {
+                Some(file) => Box::new(recipe.dynamic(region(file, Wanted::Nodes, mesh, &site)?)),
+                None => Box::new(recipe),
+            }
+        }
+    })
+}
+
+/// Reads what `viscera precompute` wrote; whether it is of this body shows when that is built.
+fn responses(path: &Path, site: &Site) -> Result<Responses, SceneErrors> {
+    let at = site.path(path);
+    let unreadable = |error| {
+        site.error(
+            format!("cannot read {}: {error}", at.display()),
+            "`viscera precompute` writes it; without this key nothing is read",
+        )
+    };
+    let bytes = site.read(path).map_err(unreadable)?;
+    Responses::from_bytes(&bytes).map_err(|error| {
+        let message = error.to_string();
+        let (message, help) = message.split_once("; ").unwrap_or((&message, ""));
+        site.error(format!("{}: {message}", at.display()), help)
     })
 }
 
@@ -54,6 +93,8 @@ fn check_owners(model: &ModelFile, site: &Site) -> Result<(), SceneErrors> {
         ("strain-displacement", model.strain_displacement.is_some(), ModelName::Corotational, "corotational"),
         ("volume", model.volume.is_some(), ModelName::Corotational, "corotational"),
         ("tangent", model.tangent.is_some(), ModelName::Corotational, "corotational"),
+        ("responses", model.responses.is_some(), ModelName::Precomputed, "precomputed"),
+        ("dynamic", model.dynamic.is_some(), ModelName::Hybrid, "hybrid"),
     ];
     match keys.into_iter().find(|(_, given, owner, _)| *given && model.kind != *owner) {
         Some((key, _, _, owner)) => {

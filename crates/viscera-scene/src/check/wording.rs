@@ -69,7 +69,7 @@ pub(super) fn known_list(schema: &Map<String, Json>, title: &str, node: &Node) -
 }
 
 /// The name that a misspelt or shortened word comes nearest to, if any is near.
-pub(crate) fn closest(word: &str, names: &[String]) -> Option<String> {
+pub fn closest(word: &str, names: &[String]) -> Option<String> {
     if let Some(name) = names.iter().find(|name| word.len() >= 3 && name.starts_with(&word.to_lowercase())) {
         return Some(name.clone());
     }

@@ -2,19 +2,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{CurveFile, LawFile, MeshFile, ModelFile, PlaceFile, RegionFile};
-use crate::quantity::{Density, Force, Length, Pressure, Rate, Time};
+use crate::quantity::{Density, Force, Length, MembraneStiffness, Pressure, Rate, Time};
 
 /// A body of tissue.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(title = "body")]
+#[schemars(title = "body", transform = crate::tissue::with_density_of_tissue)]
 pub struct BodyFile {
     /// Where its mesh comes from.
     pub mesh: MeshFile,
     /// Where it stands.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceFile>,
-    /// Mass density [kg/m³]; soft tissue about 1060.
+    /// Mass density [kg/m³]; soft tissue about 1060. A law that names its tissue gives it too.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: Density,
     /// How it resists deformation.
@@ -48,6 +48,15 @@ pub struct BodyFile {
     /// Where it is grown to other bodies; the explicit integrator only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub attach: Vec<AttachFile>,
+    /// Parts whose volume is kept to rounding, as by an incompressible filling; the explicit integrator only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub exact_volume: Vec<ExactVolumeFile>,
+    /// Regions of nodes that move as rigid bodies, each for itself; the explicit integrator only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<RegionFile>,
+    /// Membranes of muscle; the explicit integrator only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub muscle: Vec<MuscleFile>,
     /// What pulls and pushes on it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<LoadFile>,
@@ -103,6 +112,34 @@ pub struct AttachFile {
     pub region: RegionFile,
     /// Name of the other body.
     pub to: String,
+}
+
+/// A part whose volume is kept exactly. A cut takes along the volume that its cells have at that moment.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "exact volume")]
+pub struct ExactVolumeFile {
+    /// What messages and observables call it.
+    pub name: String,
+    /// Which cells.
+    pub region: RegionFile,
+}
+
+/// A membrane of muscle: springs along the edges of the faces in a region, which shorten as it is activated.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(title = "muscle")]
+pub struct MuscleFile {
+    /// Which nodes: all faces between them, on the surface or inside.
+    pub region: RegionFile,
+    /// Young's modulus times thickness [N/m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness: MembraneStiffness,
+    /// The share of their length by which edges shorten at full activation.
+    #[schemars(extend("minimum" = 0, "exclusiveMaximum" = 1))]
+    pub contraction: f64,
+    /// How far it is activated along time, from 0 to 1.
+    pub activation: CurveFile<f64>,
 }
 
 /// A region that is moved along a given way.

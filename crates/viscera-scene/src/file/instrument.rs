@@ -36,9 +36,10 @@ pub enum InstrumentFile {
         #[serde(default = "ten_millimetres")]
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: Length,
-        /// When the jaws close [s].
+        /// When the jaws close [s]; without it only a hand closes them.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0))]
-        close: Time,
+        close: Option<Time>,
         /// When they open again [s]; without it they stay closed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0))]
@@ -76,7 +77,7 @@ pub enum InstrumentFile {
         #[serde(default = "five_millimetres")]
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: Length,
-        /// When it is switched on [s]; by default at the start.
+        /// When it is switched on [s]; without it only a hand switches it on.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0))]
         on: Option<Time>,

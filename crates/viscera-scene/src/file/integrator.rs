@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct IntegratorFile {
     /// Which integrator.
     pub kind: IntegratorName,
-    /// How the non-linear equations of an implicit step are solved: "linearised", "full", or full with settings; by default
-    /// linearised for `backward-euler` and full for the others.
+    /// How the non-linear equations of an implicit or quasi-static step are solved: "linearised", "full", or full with settings; by
+    /// default linearised for `backward-euler` and full for the others. A linearised equilibrium is that of small strains, from rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub newton: Option<NewtonFile>,
     /// When the conjugate gradient of an implicit step ends; by default at 1e-4 in at most 100 iterations where the step is
@@ -48,6 +48,8 @@ pub enum IntegratorName {
     Bdf2,
     /// Implicit, of second order; keeps energy and angular momentum of St Venant–Kirchhoff tissue.
     EnergyMomentum,
+    /// From equilibrium to equilibrium, without inertia or damping: what a load or a motion does when it is put on slowly.
+    QuasiStatic,
 }
 
 impl IntegratorName {
@@ -59,6 +61,7 @@ impl IntegratorName {
             Self::Newmark => "newmark",
             Self::Bdf2 => "bdf2",
             Self::EnergyMomentum => "energy-momentum",
+            Self::QuasiStatic => "quasi-static",
         }
     }
 }
@@ -92,7 +95,7 @@ pub struct FullNewtonFile {
     #[serde(default = "one_in_a_hundred_million")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub tolerance: f64,
-    /// The most iterations; a step that needs more ends the run. By default 30.
+    /// The most iterations; a step that needs more ends the run, a share of the load of a quasi-static one is halved. By default 30.
     #[serde(default = "thirty")]
     #[schemars(extend("minimum" = 1))]
     pub iterations: u32,

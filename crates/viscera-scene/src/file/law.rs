@@ -5,10 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Length, Pressure};
 
-/// How tissue resists deformation. Give `young` and `poisson`, or `lambda` and `mu`.
+/// How tissue resists deformation. Give `young` and `poisson`, or `lambda` and `mu`; or `tissue`, which stands for all of them.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(title = "law", extend("x-exactly-one-of" = [["young", "poisson"], ["lambda", "mu"]]))]
+#[schemars(
+    title = "law",
+    extend("x-exactly-one-of" = [["young", "poisson"], ["lambda", "mu"]]),
+    transform = crate::tissue::with_tissue
+)]
 pub struct LawFile {
     /// Which law.
     pub kind: LawName,

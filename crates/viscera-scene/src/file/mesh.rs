@@ -150,6 +150,17 @@ pub enum GenerateFile {
         #[schemars(extend("exclusiveMinimum" = 0))]
         edge: Length,
     },
+    /// An upright trunk, a cylinder of elliptic cross-section that stands on the origin along z, the front at positive y; with the
+    /// groups of cells "abdomen" and "thorax", and of nodes "diaphragm" (the dome between them), "pelvis", "spine", "belly",
+    /// "ribs-1", "ribs-2" and so on.
+    Trunk {
+        /// Height from the pelvis to the shoulders [m]; an adult's is about 45 cm.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        height: Length,
+        /// Edge length of the tetrahedra [m], about.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        edge: Length,
+    },
 }
 
 /// The shape of a box's cells.

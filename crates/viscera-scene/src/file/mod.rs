@@ -19,7 +19,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Acceleration, Time};
 
-pub use body::{AttachFile, BodyFile, LoadFile, LoosePiecesFile, PartFile, PrescribeFile, SlideFile};
+pub use body::{
+    AttachFile, BodyFile, ExactVolumeFile, LoadFile, LoosePiecesFile, MuscleFile, PartFile, PrescribeFile, SlideFile,
+};
 pub use curve::{CurveFile, CurvePath};
 pub use instrument::{InstrumentFile, JawsFile, ShaftFile};
 pub use integrator::{

@@ -1,6 +1,9 @@
+use std::path::PathBuf;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::RegionFile;
 use crate::quantity::{Length, Pressure};
 
 /// How a law and a mesh become forces.
@@ -34,6 +37,12 @@ pub struct ModelFile {
     /// What `corotational` gives implicit steps as its stiffness; by default "frozen".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tangent: Option<TangentName>,
+    /// The file of responses that `viscera precompute` wrote for `precomputed`; by default they are computed at every start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub responses: Option<PathBuf>,
+    /// The part of `hybrid` that moves and can be cut: every cell with a corner in it; by default all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic: Option<RegionFile>,
 }
 
 /// The force models.
@@ -53,6 +62,18 @@ pub enum ModelName {
     Corotational,
     /// The linear law turned at each node (Müller et al. 2002); tetrahedra. For comparison: its forces do not balance.
     StiffnessWarping,
+    /// Springs along the edges of the cells (van Gelder 1998); tetrahedra and hexahedra. For comparison: Poisson's ratio is 1/4,
+    /// and what is folded stays folded.
+    MassSpring,
+    /// Nodes that return to their place among their neighbours (Promayon et al. 1996); tetrahedra and hexahedra. Comes back
+    /// where springs stay folded, and is no law of matter.
+    ShapeMemory,
+    /// Responses of the linear law found beforehand (Cotin et al. 1999); rests at every step, feels tools without friction, and cannot
+    /// be cut. Tetrahedra and hexahedra.
+    Precomputed,
+    /// One region moves and can be cut, the rest follows by the law at rest, pre-computed (Cotin et al. 2000); every law, tetrahedra
+    /// and hexahedra.
+    Hybrid,
 }
 
 /// How the rotation of a cell is found.

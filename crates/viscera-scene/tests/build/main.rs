@@ -63,6 +63,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", newton = \"full\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", matrix = \"assembled\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", preconditioner = \"multigrid\" }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"quasi-static\", linear = { iterations = 5 } }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", beta = 0.3 }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", linear = {} }"),
     ("substep = \"1e-4 s\"", "substep = \"1 ms\"\nintegrator = { kind = \"backward-euler\" }"),
@@ -77,6 +78,17 @@ const SLIPS: &[(&str, &str)] = &[
     ("kind = \"tensor-mass\" }", "kind = \"tensor-mass\", volume = \"current\" }"),
     ("kind = \"tensor-mass\" }", "kind = \"total-lagrangian\", stabilise = 0.1 }"),
     ("kind = \"tensor-mass\" }", "kind = \"nodally-integrated\", stabilise = 2 }"),
+    ("kind = \"tensor-mass\" }", "kind = \"shape-memory\" }"),
+    // Constraints and muscles.
+    ("fix = \"z-min\"", "fix = \"z-min\"\nrigid = [\"z-min\"]"),
+    ("fix = \"z-min\"", "rigid = [{ nodes = [0, 1] }]"),
+    ("fix = \"z-min\"", "exact-volume = [{ name = \"base\", region = \"z-min\" }]"),
+    (
+        "fix = \"z-min\"",
+        "muscle = [{ region = { nearest = [0, 0, 0] }, stiffness = \"5 N/m\", contraction = 0.3, activation = 1 }]",
+    ),
+    ("fix = \"z-min\"", "muscle = [{ region = \"z-min\", stiffness = \"5 N/m\", contraction = 0.3, activation = 2 }]"),
+    ("fix = \"z-min\"", "muscle = [{ region = \"z-min\", stiffness = \"5 N\", contraction = 1, activation = 1 }]"),
 ];
 
 /// What cannot be built is refused in its line, with what is near or what would do: `refusals.txt` is what people read.
@@ -121,7 +133,7 @@ fn integrators_and_models_are_those_that_the_scene_asks_for() {
         let text = SCENE.replacen("substep = \"1e-4 s\"", &format!("integrator = {{ {text} }}"), 1);
         match built(&text.replacen("\"tensor-mass\"", "\"total-lagrangian\"", 1)).world.config().integrator {
             Integrator::Implicit(settings) => settings,
-            Integrator::Explicit(_) => panic!("{text} is explicit"),
+            other => panic!("{text} is {other:?}"),
         }
     };
     assert_eq!(integrator("kind = \"backward-euler\""), Implicit::default());
@@ -143,6 +155,51 @@ fn integrators_and_models_are_those_that_the_scene_asks_for() {
     let expected = Implicit { linear, ..Implicit::accurate(Scheme::Bdf2) };
     assert_eq!(integrator("kind = \"bdf2\", newton = \"full\", linear = { tolerance = 1e-9 }"), expected);
     assert_eq!(integrator("kind = \"energy-momentum\""), Implicit::accurate(Scheme::EnergyMomentum));
+}
+
+/// What only explicit steps know is refused in the line of the integrator.
+#[test]
+fn implicit_integrators_refuse_volumes_that_are_kept_exactly() {
+    let text = SCENE.replacen("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\" }", 1).replacen(
+        "density = 1000",
+        "density = 1000\nexact-volume = [{ name = \"bar\", region = \"all\" }]",
+        1,
+    );
+    let error = build(&text).err().map(|errors| errors.to_string()).unwrap_or_default();
+    assert!(error.contains("this integrator cannot step body `bar`: it has volumes kept exactly"), "{error}");
+    assert!(error.contains("integrator = { kind = \"bdf2\" }") && error.contains("take `explicit`"), "{error}");
+}
+
+/// A bar that hangs under its weight, from rest to rest: what fixes it carries that weight from the first step on.
+#[test]
+fn equilibria_can_be_asked_for_in_every_way() {
+    let hang = |settings: &str| {
+        let text = format!(
+            r#"
+            duration = "20 ms"
+            step = "10 ms"
+            gravity = [0, 0, -0.5]
+            integrator = {{ kind = "quasi-static"{settings} }}
+            [body.bar]
+            mesh = {{ generate = "box", size = [0.1, 0.1, 0.4], cells = [1, 1, 4] }}
+            density = 1000
+            law = {{ kind = "neo-hookean", young = "10 kPa", poisson = 0.3 }}
+            fix = "z-max"
+            "#
+        );
+        let mut built = built(&text);
+        for _ in 0..built.steps() {
+            built.world.step().unwrap_or_else(|error| panic!("{error}"));
+        }
+        let seen = built.world.observe(built.bodies["bar"]);
+        (seen.max_displacement, seen.reaction.z)
+    };
+    let (full, carried) = hang("");
+    assert!((carried - 2.0).abs() < 1e-5, "{carried} N of 2 N");
+    assert_eq!(hang(", newton = \"full\"").0, full);
+    assert!((hang(", newton = { tolerance = 1e-6, iterations = 10 }").0 / full - 1.0).abs() < 1e-5);
+    let (linear, _) = hang(", newton = \"linearised\"");
+    assert!(1e-3 < (linear / full - 1.0).abs(), "{linear} m at small strain, {full} m");
 }
 
 /// Every combination of the settings of `corotational` steps, on both kinds of cells, and its name and effect are its own: bars

@@ -18,7 +18,6 @@ const SLIPS: &[(&str, &str)] = &[
     ("radius = \"3 cm\"", "radius = \"3 cm\", colour = 3"),
     ("file = \"paths/resection.csv\"", "fil = \"paths/resection.csv\""),
     ("density = 1060", "density = 1060\ndensity = 1000"),
-    ("close = \"0.2 s\"", ""),
     ("duration = \"4 s\"\n", ""),
     ("kind = \"grasper\"\n", ""),
     ("poisson = 0.45, ", ""),

@@ -28,13 +28,14 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
             // The settings of one integrator are refused by another.
             scene.integrator = IntegratorFile { kind, ..IntegratorFile::default() };
             let explicit = kind == IntegratorName::Explicit;
-            let damped = scene.body.values_mut().filter(|body| explicit && body.stiffness_damping.0 != 0.0);
+            let undamped = explicit || kind == IntegratorName::QuasiStatic;
+            let damped = scene.body.values_mut().filter(|body| undamped && body.stiffness_damping.0 != 0.0);
             let undamped = damped.map(|body| body.stiffness_damping = Time(0.0)).count();
             if !explicit {
                 scene.substep = viscera_scene::file::SubstepFile::default();
             }
-            let notice = "explicit steps know no damping by the stiffness: it is 0 now";
-            Vec::from_iter((undamped > 0).then(|| notice.to_owned()))
+            let notice = format!("{} steps know no damping by the stiffness: it is 0 now", kind.name());
+            Vec::from_iter((undamped > 0).then_some(notice))
         },
     },
     Definition {
@@ -345,6 +346,8 @@ pub(crate) fn bare(kind: ModelName) -> ModelFile {
         strain_displacement: None,
         volume: None,
         tangent: None,
+        responses: None,
+        dynamic: None,
     }
 }
 
@@ -387,7 +390,10 @@ fn edge_of(mesh: &MeshFile) -> Option<Length> {
     match mesh {
         MeshFile::Surface(surface) => Some(surface.edge),
         MeshFile::Generate(
-            GenerateFile::Cylinder { edge, .. } | GenerateFile::Tube { edge, .. } | GenerateFile::Liver { edge, .. },
+            GenerateFile::Cylinder { edge, .. }
+            | GenerateFile::Tube { edge, .. }
+            | GenerateFile::Liver { edge, .. }
+            | GenerateFile::Trunk { edge, .. },
         ) => Some(*edge),
         _ => None,
     }
@@ -397,7 +403,10 @@ fn edge_mut(mesh: &mut MeshFile) -> Option<&mut Length> {
     match mesh {
         MeshFile::Surface(surface) => Some(&mut surface.edge),
         MeshFile::Generate(
-            GenerateFile::Cylinder { edge, .. } | GenerateFile::Tube { edge, .. } | GenerateFile::Liver { edge, .. },
+            GenerateFile::Cylinder { edge, .. }
+            | GenerateFile::Tube { edge, .. }
+            | GenerateFile::Liver { edge, .. }
+            | GenerateFile::Trunk { edge, .. },
         ) => Some(edge),
         _ => None,
     }

@@ -9,7 +9,7 @@ use viscera_scene::{Files, Scene};
 
 use super::Session;
 use crate::message::{Bytes, Command, Level, Purpose, Refusal, ReplayState, RunState};
-use crate::recording::{Agreement, BodyMark, Event, INTERVAL, Mark, Recording};
+use crate::recording::{Agreement, BodyMark, Event, INTERVAL, Mark, Recording, processor};
 use crate::refuse;
 use crate::simulation::{AnyWorld, Kept, Play};
 
@@ -159,13 +159,13 @@ impl Session {
                 Agreement::Numbers => {
                     replayer.told = true;
                     let text = format!("by {at} the bits differ from the recording, and the numbers agree");
-                    said = Some((Level::Info, text, "it was made on another kind of processor, or by another version"));
+                    said = Some((Level::Info, text, made_elsewhere(&replayer.recording)));
                 }
                 Agreement::None(_) if !replayer.agrees => {}
                 Agreement::None(what) => {
                     (replayer.told, replayer.agrees) = (true, false);
                     let text = format!("by {at} the replay has departed from the recording: {what}");
-                    said = Some((Level::Warning, text, "it was made by another version of the program"));
+                    said = Some((Level::Warning, text, "it was made by another version of the program".into()));
                 }
             }
         }
@@ -188,6 +188,16 @@ impl Session {
             (_, false) => format!("replayed {steps} steps, with a difference"),
         };
         self.notify(Level::Info, text, "");
+    }
+}
+
+/// Why bits may differ from those recorded.
+fn made_elsewhere(recording: &Recording) -> String {
+    let (here, there) = (processor(), &recording.processor);
+    if here == *there {
+        "it was made by another version of the program".into()
+    } else {
+        format!("it was made on another kind of processor: {there}, and here it is {here}")
     }
 }
 

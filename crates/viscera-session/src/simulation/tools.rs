@@ -120,13 +120,21 @@ pub(crate) fn lead_as_before(
 /// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m].
 pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
     let kind = named(kind)?;
-    with!(world, world => world.add_instrument(instrument(kind, radius, hand)).map(|_| ())).map_err(text)
+    with!(world, world => {
+        let instrument = instrument(world, kind, radius, hand);
+        world.add_instrument(instrument).map(|_| ())
+    })
+    .map_err(text)
 }
 
 /// Puts an instrument where the hand is, at once.
 fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
     let kind = named(kind)?;
-    with!(world, world => world.replace_instrument(id(number), instrument(kind, radius, hand))).map_err(text)
+    with!(world, world => {
+        let instrument = instrument(world, kind, radius, hand);
+        world.replace_instrument(id(number), instrument)
+    })
+    .map_err(text)
 }
 
 /// Says where an instrument should be at the end of the next step.
@@ -156,7 +164,21 @@ fn proportion(radius: f64) -> f64 {
     if (0.2..5.0).contains(&(radius / USUAL_RADIUS)) { 1.0 } else { radius / USUAL_RADIUS }
 }
 
-fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
+/// Mean edge of the surface of the coarsest body at rest [m].
+fn coarseness<T: Scalar>(world: &World<T>) -> f64 {
+    let mean = |body: BodyId| {
+        let (body, nodes) = (world.body(body), world.body(body).mesh().nodes());
+        let edges = body.surface().into_iter().flat_map(|triangle| {
+            let [a, b, c] = triangle.nodes.map(|node| nodes[node as usize]);
+            [a - b, b - c, c - a].map(|edge| edge.norm())
+        });
+        let (sum, count) = edges.fold((0.0, 0.0), |(sum, count), edge| (sum + edge, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    world.body_ids().map(mean).fold(0.0, f64::max)
+}
+
+fn instrument<T: Scalar>(world: &World<T>, kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
     let size = proportion(radius);
     let path = Curve::constant(Vec3::from(hand.tip));
     let mount = Mount { roll: hand.roll, ..Mount::along(hand.direction.into()) };
@@ -166,7 +188,8 @@ fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<
         InstrumentKind::Grasper => Box::new(Grasper {
             path,
             mount,
-            radius: 0.012 * size,
+            // Jaws hold nodes, and dent the tissue before they close: short of an edge, they held none of a liver with cells of 24 mm.
+            radius: (0.012 * size).max(coarseness(world)),
             jaws: Some(Jaws { length: 0.02 * size, radius: 1.5e-3 * size, ..Jaws::default() }),
             shaft: Some(shaft),
             ..Grasper::default()

@@ -81,6 +81,54 @@ fn a_grasper_carries_what_it_closes_on() {
     assert!(!page.frame().instruments[0].holds);
 }
 
+/// Wherever a hand presses them on the liver, jaws take hold: those of the scene on its cells, and those that a hand brings in also on
+/// cells that are longer than the jaws.
+#[test]
+fn jaws_take_hold_wherever_they_are_pressed() {
+    const CLEARANCE: f64 = 0.03;
+    const DEPTH: f64 = 0.007;
+    for (edge, tool) in [(0.016, 0), (0.024, 3)] {
+        let mut page = Page::open(BAR);
+        page.say(Command::OpenScene { name: "liver".into() });
+        page.set("body.liver.mesh.edge", edge);
+        page.listen();
+        if tool == 3 {
+            assert_eq!(page.add("grasper", [0.0, 0.3, 0.0], [0.0, -1.0, 0.0]), 3);
+        }
+        let places = centroids(&page);
+        // From above, and a little from where the trocar is.
+        let seen: Vec<_> = places.into_iter().filter(|(_, normal)| normal[1] > 0.5 && normal[2] > 0.0).collect();
+        assert!(seen.len() > 30, "{}", seen.len());
+        for (place, _) in seen.iter().step_by(seen.len() / 3) {
+            page.say(Command::Reset {});
+            let above = |height: f64| [place[0], place[1] + height, place[2]];
+            for height in [CLEARANCE, 0.5 * CLEARANCE, -0.5 * DEPTH, -DEPTH] {
+                page.lead(tool, above(height), 0.0);
+                page.step(1);
+            }
+            page.lead(tool, above(-DEPTH), 1.0);
+            page.step(2);
+            let frame = page.frame().instruments.iter().find(|frame| frame.instrument == tool).unwrap();
+            assert!(frame.holds, "nothing is held at {place:?} with cells of {edge} m");
+        }
+    }
+}
+
+/// Middles of the triangles of the first body at rest, and their normals.
+fn centroids(page: &Page) -> Vec<([f64; 3], [f64; 3])> {
+    let surface = &page.surfaces[0];
+    let corner =
+        |vertex: u32| -> [f64; 3] { std::array::from_fn(|axis| f64::from(surface.rest.0[3 * vertex as usize + axis])) };
+    let of = |triangle: &[u32]| {
+        let [a, b, c] = [corner(triangle[0]), corner(triangle[1]), corner(triangle[2])];
+        let [u, v]: [[f64; 3]; 2] = [b, c].map(|end| std::array::from_fn(|axis| end[axis] - a[axis]));
+        let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+        (std::array::from_fn(|axis| (a[axis] + b[axis] + c[axis]) / 3.0), normal.map(|part| part / length))
+    };
+    surface.triangles.0.chunks_exact(3).map(of).collect()
+}
+
 /// The hook burns its way, vertices keep their numbers, new ones come at the end, and the rim is seared.
 #[test]
 fn a_cautery_removes_cells_and_leaves_a_seared_rim() {

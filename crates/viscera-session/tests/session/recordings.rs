@@ -1,4 +1,6 @@
-use viscera_session::message::{Bytes, Command, RunState};
+use viscera_session::library;
+use viscera_session::message::{Bytes, Command, FrameMessage, RunState};
+use viscera_session::recording::{Recording, processor};
 
 use crate::support::{BAR, Page};
 
@@ -102,4 +104,63 @@ fn what_is_no_recording_is_refused() {
     }
     page.say(Command::Replay { name: Some("nothing".into()), bytes: None });
     assert!(page.refusals()[0].reason.contains("no recording `nothing`"));
+}
+
+/// Plays a recording that comes with the program; gives a frame after each of its steps, with what was measured.
+fn watch(name: &str) -> Vec<FrameMessage> {
+    let (_, bytes) = library::recordings().find(|(known, _)| *known == name).expect("the recording is built in");
+    let recording = Recording::decode(bytes).unwrap();
+    let mut page = Page::open(BAR);
+    page.say(Command::Replay { name: Some(name.into()), bytes: None });
+    assert_eq!(page.refusals(), []);
+    let mut frames: Vec<FrameMessage> = Vec::new();
+    while page.frame().state == RunState::Running {
+        page.session.elapse(recording.seconds() / 500.0);
+        while page.session.work() {}
+        page.listen();
+        if page.frame().observables.is_some() && frames.last().is_none_or(|last| last.steps < page.frame().steps) {
+            frames.push(page.frame().clone());
+        }
+    }
+    // Elsewhere vectors are longer or shorter, and roundings others.
+    let same = if recording.processor == processor() { "bits" } else { "numbers" };
+    let notices = page.notices();
+    assert!(notices.last().is_some_and(|last| last.ends_with(&format!("to the same {same}"))), "{notices:?}");
+    frames
+}
+
+/// The lobe follows the jaws, which feel it, and falls when they open.
+#[test]
+fn the_kept_pull_lifts_the_lobe_and_lets_it_fall() {
+    let frames = watch("lobe-pulled");
+    let force = |frame: &FrameMessage| frame.instruments[0].force.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let lifted = frames.iter().rposition(|frame| frame.instruments[0].holds).expect("the grasper held something");
+    let (held, later) = (&frames[lifted], &frames[lifted + 1..]);
+    // Some tens of grams of tissue that is bent up by a hand's breadth.
+    assert!(force(held) > 0.3 && force(held) < 10.0, "{} N", force(held));
+    let place = |frame: &FrameMessage, vertex: usize| -> [f64; 3] {
+        std::array::from_fn(|axis| f64::from(frame.bodies[0].positions.0[3 * vertex + axis]))
+    };
+    let from_tip = |vertex: usize| {
+        let (place, tip) = (place(held, vertex), held.instruments[0].tip);
+        (0..3).map(|axis| (place[axis] - tip[axis]).powi(2)).sum::<f64>()
+    };
+    let vertices = 0..held.bodies[0].positions.0.len() / 3;
+    let grasped = vertices.min_by(|&a, &b| from_tip(a).total_cmp(&from_tip(b))).unwrap();
+    let lowest = later.iter().map(|frame| place(frame, grasped)[1]).fold(f64::INFINITY, f64::min);
+    assert!(place(held, grasped)[1] - lowest > 0.03, "it fell by {} m", place(held, grasped)[1] - lowest);
+    let last = later.last().unwrap();
+    assert!(!last.instruments[0].holds && force(last) == 0.0);
+}
+
+/// The hook takes cells away while its current is on and no others.
+#[test]
+fn the_kept_cut_burns_while_the_current_is_on() {
+    let frames = watch("edge-cut");
+    let removed = |frame: &FrameMessage| frame.observables.as_ref().unwrap()[0].removed;
+    assert!(removed(frames.last().unwrap()) >= 10, "{}", removed(frames.last().unwrap()));
+    for pair in frames.windows(2) {
+        let on = pair.iter().any(|frame| frame.instruments[1].trigger > 0.0);
+        assert!(on || removed(&pair[0]) == removed(&pair[1]), "burnt without current by {} s", pair[1].time);
+    }
 }

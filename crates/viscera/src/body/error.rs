@@ -1,5 +1,5 @@
 use crate::mesh::{MeshError, RegionError};
-use crate::model::ModelError;
+use crate::model::{ModelError, ModelKind};
 
 /// Why a body cannot be added to a world.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -55,6 +55,42 @@ pub enum BodyError {
         body: String,
         /// What it says.
         source: ModelError,
+    },
+    /// What is pre-computed answers in proportion to what acts on it.
+    #[error(
+        "body `{body}`: the model `{model}` knows neither volumes kept exactly nor rigid parts nor muscles; take a model that moves all of the body, such as `corotational`"
+    )]
+    LinearModel {
+        /// Name of the body.
+        body: String,
+        /// The model.
+        model: ModelKind,
+    },
+    /// A node of a rigid part is fixed, prescribed or guided.
+    #[error(
+        "body `{body}`: node {node} of a rigid part is fixed or moved as well; leave it out of one of the two regions, or fix the whole part instead of making it rigid"
+    )]
+    HeldRigidPart {
+        /// Name of the body.
+        body: String,
+        /// The node.
+        node: usize,
+    },
+    /// A node is in two rigid parts.
+    #[error("body `{body}`: node {node} is in two rigid parts; make one of the two, or leave it out of one")]
+    OverlappingRigidParts {
+        /// Name of the body.
+        body: String,
+        /// The node.
+        node: usize,
+    },
+    /// The nodes of a rigid part do not tell how it is turned.
+    #[error("body `{body}`: the {nodes} nodes of a rigid part lie in a line; take a region with three that do not")]
+    RigidPartInLine {
+        /// Name of the body.
+        body: String,
+        /// How many there are.
+        nodes: usize,
     },
     /// A region selects nothing, or cannot.
     #[error("body `{body}`, {purpose}: {source}")]

@@ -113,4 +113,21 @@ impl Guides {
         }
         sum
     }
+
+    /// How many curves displace along guides.
+    pub(crate) fn curve_count(&self) -> usize {
+        self.curves.len()
+    }
+
+    /// Where a curve is at `time` [s]: a displacement [m].
+    pub(crate) fn value(&self, curve: usize, time: f64) -> f64 {
+        self.curves[curve].at(time)
+    }
+
+    /// Displacement of a guide's nodes for a unit of one curve, the others at zero.
+    pub(crate) fn share_of(&self, guide: u32, curve: usize) -> Vec3<f64> {
+        let Guide { directions, displacements } = &self.guides[guide as usize];
+        let of = |terms: &[(usize, f64)]| terms.iter().filter(|term| term.0 == curve).map(|term| term.1).sum::<f64>();
+        directions.iter().zip(displacements).fold(Vec3::ZERO, |sum, (&direction, terms)| sum + direction * of(terms))
+    }
 }

@@ -108,6 +108,26 @@ impl<T: Scalar> NodalLoads<T> {
     }
 }
 
+impl<T: Scalar> NodalLoads<T> {
+    /// Forces [N] of every load on the body as it is at `rest`, for a unit of each component of its curve: number, component, forces.
+    pub(crate) fn unit_forces(&self, rest: &[Vec3<T>]) -> Vec<(usize, usize, Vec<Vec3<T>>)> {
+        let mut all = Vec::new();
+        for (number, load) in self.loads.iter().enumerate() {
+            for (component, unit) in Mat3::<f64>::IDENTITY.columns.into_iter().enumerate().take(load.components()) {
+                let mut forces = vec![Vec3::ZERO; rest.len()];
+                load.add_value(unit, rest, &[], &mut forces);
+                all.push((number, component, forces));
+            }
+        }
+        all
+    }
+
+    /// A component of a load's curve at `time` [s].
+    pub(crate) fn value(&self, number: usize, component: usize, time: f64) -> f64 {
+        self.loads[number].value(time)[component]
+    }
+}
+
 impl<T: Scalar> NodalLoad<T> {
     fn new(load: &Load, mesh: &VolumeMesh) -> Result<Self, (&'static str, RegionError)> {
         match load {
@@ -134,14 +154,35 @@ impl<T: Scalar> NodalLoad<T> {
     }
 
     fn add(&self, time: f64, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {
+        self.add_value(self.value(time), x, removed, out);
+    }
+
+    /// What the load's curve says [N or Pa]; a pressure stands in the first component.
+    fn value(&self, time: f64) -> Vec3<f64> {
         match self {
-            Self::Shares { shares, curve, faces } => {
-                let value = curve.at(time);
+            Self::Shares { curve, .. } => curve.at(time),
+            Self::Pressure { pressure, .. } => Vec3::new(pressure.at(time), 0.0, 0.0),
+        }
+    }
+
+    /// How many components its curve has.
+    fn components(&self) -> usize {
+        match self {
+            Self::Shares { .. } => 3,
+            Self::Pressure { .. } => 1,
+        }
+    }
+
+    /// Adds the forces for this value of the curve; cells beyond the end of `removed` are there.
+    fn add_value(&self, value: Vec3<f64>, x: &[Vec3<T>], removed: &[bool], out: &mut [Vec3<T>]) {
+        let is_there = |cell: u32| !removed.get(cell as usize).copied().unwrap_or(false);
+        match self {
+            Self::Shares { shares, faces, .. } => {
                 let force: Vec3<T> = value.cast();
                 for &(node, share) in shares {
                     out[node as usize] += force * share;
                 }
-                for face in faces.iter().filter(|face| !removed[face.cell as usize]) {
+                for face in faces.iter().filter(|face| is_there(face.cell)) {
                     let third: Vec3<T> = (value * (face.area / 3.0)).cast();
                     for node in face.nodes {
                         out[node as usize] += third;
@@ -149,11 +190,10 @@ impl<T: Scalar> NodalLoad<T> {
                 }
             }
             // −p n A/3 on each corner, with n A = ½ (b − a)×(c − a) the current outward area vector
-            Self::Pressure { faces, pressure } => {
-                let pressure = pressure.at(time);
-                for face in faces.iter().filter(|face| !removed[face.cell as usize]) {
+            Self::Pressure { faces, .. } => {
+                for face in faces.iter().filter(|face| is_there(face.cell)) {
                     let [a, b, c] = face.nodes.map(|node| x[node as usize]);
-                    let force = (b - a).cross(c - a) * T::from_f64(-pressure * face.weight / 6.0);
+                    let force = (b - a).cross(c - a) * T::from_f64(-value.x * face.weight / 6.0);
                     for node in face.nodes {
                         out[node as usize] += force;
                     }

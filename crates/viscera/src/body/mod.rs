@@ -1,26 +1,40 @@
 //! Bodies: what a user describes ([`Body`]), and what a world simulates ([`SimulatedBody`]).
 
+mod boundary;
+mod constrained;
 mod deformation;
 mod error;
+mod followers;
 mod guide;
+mod influence;
 mod load;
 mod model_plan;
+mod muscle;
 mod placement;
 mod removals;
 mod simulated;
 mod state;
+mod static_answer;
 mod stress;
+mod supports;
 
+pub use boundary::SurfaceTriangle;
+pub use constrained::KeptVolumeNow;
 pub use error::BodyError;
+pub(crate) use followers::Followers;
 pub(crate) use guide::Guides;
+pub(crate) use influence::Drivers;
 pub use load::Load;
 pub(crate) use load::NodalLoads;
 pub(crate) use model_plan::{ModelPlan, Models};
+pub use muscle::Muscle;
+pub(crate) use muscle::Muscles;
 pub use removals::Removals;
+pub use simulated::SimulatedBody;
 pub(crate) use simulated::free_directions;
-pub use simulated::{SimulatedBody, SurfaceTriangle};
 pub use state::{BodyState, NodeMotion, PastState};
 pub(crate) use state::{Driven, MotionBackup};
+pub(crate) use static_answer::StaticAnswer;
 
 use crate::curve::Curve;
 use crate::math::Vec3;
@@ -62,6 +76,9 @@ pub struct Body {
     pub(crate) prescribed: Vec<(Region, Curve<Vec3<f64>>)>,
     pub(crate) guided: Vec<(Region, [f64; 3], Curve<f64>)>,
     pub(crate) loads: Vec<Load>,
+    pub(crate) muscles: Vec<Muscle>,
+    pub(crate) exact_volumes: Vec<(String, Region)>,
+    pub(crate) rigid: Vec<Region>,
     pub(crate) loose_pieces: LoosePieces,
 }
 
@@ -90,6 +107,9 @@ impl Body {
             prescribed: Vec::new(),
             guided: Vec::new(),
             loads: Vec::new(),
+            muscles: Vec::new(),
+            exact_volumes: Vec::new(),
+            rigid: Vec::new(),
             loose_pieces: LoosePieces::default(),
         }
     }
@@ -166,6 +186,28 @@ impl Body {
     /// Pulls or presses on a region.
     pub fn load(mut self, load: Load) -> Self {
         self.loads.push(load);
+        self
+    }
+
+    /// Adds a membrane of muscle. Explicit steps only.
+    pub fn muscle(mut self, muscle: Muscle) -> Self {
+        self.muscles.push(muscle);
+        self
+    }
+
+    /// Keeps the common volume of the cells of a region to rounding, in every sub-step: what an incompressible filling would do,
+    /// that flows freely inside. Messages and observables call it by `name`. A cut takes along the volume that its cells have at
+    /// that moment. Explicit steps only.
+    pub fn keep_volume_exactly(mut self, name: impl Into<String>, region: Region) -> Self {
+        self.exact_volumes.push((name.into(), region));
+        self
+    }
+
+    /// Lets the nodes of a region move as one rigid body, with their mass and its moments of inertia. They may be neither fixed,
+    /// prescribed nor guided, in one part only, and not all in a line. What an instrument does to a node of it, it does to the
+    /// whole. Explicit steps only.
+    pub fn rigid(mut self, region: Region) -> Self {
+        self.rigid.push(region);
         self
     }
 

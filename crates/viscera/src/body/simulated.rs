@@ -1,14 +1,18 @@
+use super::boundary::{Boundary, SurfaceTriangle};
+use super::supports::{filters, motions};
 use super::{
-    Body, BodyError, BodyState, Driven, Guides, LoosePieces, ModelPlan, Models, MotionBackup, NodalLoads, NodeMotion,
-    PastState, Removals,
+    Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoosePieces, ModelPlan, Models, MotionBackup,
+    Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer,
 };
+use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
 use crate::curve::Curve;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
-use crate::mesh::{Face, Region, TetTopology, VolumeMesh, cells_of_nodes};
+use crate::mesh::{VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
+use crate::model::precomputed::Supports;
 use crate::model::{ModelKind, Precision, Scratch};
 use crate::solver::Filter;
 use crate::stage::{Stage, Stages};
@@ -37,6 +41,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) prescribed: Vec<Curve<Vec3<f64>>>,
     pub(crate) guides: Guides,
     pub(crate) loads: NodalLoads<T>,
+    pub(crate) muscles: Muscles<T>,
+    pub(crate) constraints: Constraints,
     pub(crate) loose_pieces: LoosePieces,
     /// Cells at each node: those of node n are `cells_at_nodes.1[starts[n]..starts[n + 1]]`.
     pub(crate) cells_at_nodes: (Vec<u32>, Vec<u32>),
@@ -54,21 +60,10 @@ pub struct SimulatedBody<T: Scalar> {
     /// Triangles of the surface as it is now, for tools that touch it; none without such tools.
     pub(crate) skin: Vec<[u32; 3]>,
     pub(crate) contacts: Contacts,
-}
-
-/// The faces that are, or may become, surface: triangles, and the cells on their two sides.
-#[derive(Clone, Debug)]
-pub(crate) struct Boundary {
-    faces: Vec<Face>,
-}
-
-/// A triangle of the current surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SurfaceTriangle {
-    /// Corners, counter-clockwise seen from outside.
-    pub nodes: [u32; 3],
-    /// Whether a cut has laid it open.
-    pub cut: bool,
+    /// How it answers, where it does not move in time.
+    pub(crate) answer: Option<Box<StaticAnswer>>,
+    /// What of it follows the rest.
+    pub(crate) followers: Option<Box<Followers>>,
 }
 
 impl<T: Scalar> SimulatedBody<T> {
@@ -88,6 +83,9 @@ impl<T: Scalar> SimulatedBody<T> {
             prescribed,
             guided,
             loads,
+            muscles,
+            exact_volumes,
+            rigid,
             loose_pieces,
         } = body;
         let body = || name.clone();
@@ -100,24 +98,24 @@ impl<T: Scalar> SimulatedBody<T> {
         if keep_volume != 0.0 && matches!(mesh, VolumeMesh::Hex(_)) {
             return Err(BodyError::KeepVolumeOnHexahedra { body: body() });
         }
+        let (guides, mut motions) = motions(&name, &mesh, &fixed, &prescribed, guided)?;
+        let prescribed: Vec<_> = prescribed.into_iter().map(|(_, curve)| curve).collect();
+        let filters = filters(&guides, &motions);
+        let supports = Supports { mesh: &mesh, filters: &filters };
+        let recipe = recipe.supported(&supports).map_err(model_error)?.unwrap_or(recipe);
+        if let Some(condensation) = recipe.condensation() {
+            condensation.followers().iter().for_each(|&node| motions[node as usize] = NodeMotion::Following);
+        }
         let plan = ModelPlan { recipe, density, keep_volume };
         let Models { forces: models, frequency } = plan.build(&mesh).map_err(model_error)?;
-
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
-        let (guides, guide_at_nodes) = Guides::new(&name, guided, &mesh)?;
-        let guided = |guide: Option<u32>| guide.map_or(NodeMotion::Free, NodeMotion::Guided);
-        let mut motions: Vec<_> = guide_at_nodes.into_iter().map(guided).collect();
-        let mut curves = Vec::new();
-        for (number, (region, curve)) in prescribed.into_iter().enumerate() {
-            mark(&mut motions, &region, &mesh, NodeMotion::Prescribed(number as u32))
-                .map_err(region_error("a prescribed motion"))?;
-            curves.push(curve);
-        }
-        for region in &fixed {
-            mark(&mut motions, region, &mesh, NodeMotion::Fixed).map_err(region_error("a fixed region"))?;
-        }
         let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| region_error(purpose)(source))?;
+
+        let boundary = Boundary::new(&mesh);
+        let muscles = Muscles::new(&name, muscles, &mesh, &boundary.faces)?;
+        let (constraints, volumes) =
+            super::constrained::constraints(&name, exact_volumes, rigid, &mesh, &boundary.faces, &motions)?;
 
         let cell_volumes = cell_volumes(&mesh);
         let density_of = |cell: usize| plan.density[if plan.density.len() == 1 { 0 } else { cell }];
@@ -128,7 +126,26 @@ impl<T: Scalar> SimulatedBody<T> {
             VolumeMesh::Tet(mesh) => cells_of_nodes(mesh),
             VolumeMesh::Hex(mesh) => cells_of_nodes(mesh),
         };
-        let state = initial_state(&name, &mesh, &corner_masses, motions, models)?;
+        let state = initial_state(&name, &mesh, &corner_masses, motions, models, volumes)?;
+        let (recipe, drivers) = (&plan.recipe, Drivers { prescribed: &prescribed, guides: &guides, loads: &loads });
+        let responses = recipe.responses(&supports).map_err(model_error)?;
+        let answer = responses.map(|found| StaticAnswer::new(found, recipe.tissue(), &supports, drivers, &state));
+        let answer = answer.transpose().map_err(model_error)?.map(Box::new);
+        let part = recipe.condensation().filter(|condensation| !condensation.boundary().is_empty()).cloned();
+        let followers = part.map(|part| Followers::new(part, (recipe.tissue(), &mesh), drivers, &state));
+        let followers = followers.transpose().map_err(model_error)?.map(Box::new);
+        if answer.is_some() {
+            let rests = "zero: the body rests at the end of every step";
+            check_range(&name, "damping", damping, damping == 0.0, rests)?;
+            check_range(&name, "stiffness damping", stiffness_damping, stiffness_damping == 0.0, rests)?;
+        }
+        if answer.is_some() || followers.is_some() {
+            if !(constraints.is_empty() && muscles.is_empty()) {
+                return Err(BodyError::LinearModel { body: body(), model: recipe.kind() });
+            }
+            let linear = "zero: what is pre-computed is linear";
+            check_range(&name, "keep-volume", keep_volume, keep_volume == 0.0, linear)?;
+        }
         Ok(Self {
             fingerprint: fingerprint(&plan, &mesh, &corner_masses),
             model: plan.recipe.kind(),
@@ -136,7 +153,7 @@ impl<T: Scalar> SimulatedBody<T> {
             damping: T::from_f64(damping),
             stiffness_damping: T::from_f64(stiffness_damping),
             rest: state.positions.clone(),
-            prescribed: curves,
+            prescribed,
             external_forces: vec![Vec3::ZERO; mesh.nodes().len()],
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             is_linearized: false,
@@ -145,7 +162,7 @@ impl<T: Scalar> SimulatedBody<T> {
             pieces: vec![0; 2 * mesh.nodes().len()],
             skin: Vec::new(),
             contacts: Contacts::default(),
-            boundary: Boundary::new(&mesh),
+            boundary,
             plan,
             name,
             mesh,
@@ -153,10 +170,14 @@ impl<T: Scalar> SimulatedBody<T> {
             cell_volumes,
             guides,
             loads,
+            muscles,
+            constraints,
             loose_pieces,
             cells_at_nodes,
             state,
             frequency,
+            answer,
+            followers,
         })
     }
 
@@ -250,6 +271,9 @@ impl<T: Scalar> SimulatedBody<T> {
         let faces = if touch { self.boundary.faces.len() } else { 0 };
         let triangles = self.boundary.surface(&self.state.removed).count().min(faces);
         self.contacts.reserve(tools, triangles, faces);
+        if let Some(answer) = &mut self.answer {
+            answer.pushes.reserve(triangles, answer.responses.handles().len());
+        }
         self.state.tractions.reserve(triangles.saturating_sub(self.state.tractions.len()));
         self.backup.reserve_tractions(triangles);
         self.skin.reserve(faces.saturating_sub(self.skin.len()));
@@ -316,13 +340,19 @@ impl<T: Scalar> SimulatedBody<T> {
 
     /// Bound of ω_max² at the current positions [1/s²].
     pub(crate) fn squared_frequency(&mut self) -> f64 {
-        *self
-            .state
-            .squared_frequency
-            .get_or_insert_with(|| self.frequency.squared_frequency(&self.state.positions, &mut self.scratch))
+        if self.state.squared_frequency.is_none() {
+            self.state.squared_frequency = Some(self.measure_squared_frequency());
+        }
+        self.state.squared_frequency.unwrap_or_default()
     }
 
-    /// Gravity and loads at `time` on the current positions [N].
+    fn measure_squared_frequency(&mut self) -> f64 {
+        let state = &self.state;
+        let of_tissue = self.frequency.squared_frequency(&state.positions, &mut self.scratch);
+        of_tissue + self.muscles.squared_frequency(&state.masses, &state.removed, &mut self.scratch.forces)
+    }
+
+    /// Gravity, loads and muscles at `time` on the current positions [N].
     pub(crate) fn update_external_forces(&mut self, time: f64, gravity: Vec3<T>) {
         let masses = &self.state.masses;
         let work = |block: usize, NodeBlocks(forces): NodeBlocks<'_, Vec3<T>>| {
@@ -332,6 +362,11 @@ impl<T: Scalar> SimulatedBody<T> {
         };
         self.scratch.executor.each(node_blocks(masses.len()), NodeBlocks(&mut self.external_forces), &work);
         self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
+        self.muscles.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
+        if let Some(followers) = &self.followers {
+            let drivers = Drivers { prescribed: &self.prescribed, guides: &self.guides, loads: &self.loads };
+            followers.condense(drivers, gravity.cast(), time, &mut self.external_forces);
+        }
     }
 }
 
@@ -361,18 +396,6 @@ fn check_density(body: &str, density: &[f64], cells: usize) -> Result<(), BodyEr
     } else {
         Err(BodyError::WrongDensityCount { body: body.into(), given: density.len(), cells })
     }
-}
-
-fn mark(
-    motions: &mut [NodeMotion],
-    region: &Region,
-    mesh: &VolumeMesh,
-    motion: NodeMotion,
-) -> Result<(), crate::mesh::RegionError> {
-    for node in region.nodes(mesh)? {
-        motions[node as usize] = motion;
-    }
-    Ok(())
 }
 
 /// A checksum of the rest shape, the masses, the law and the model: bodies that differ in one of these have, but for one in four
@@ -406,6 +429,7 @@ fn initial_state<T: Scalar>(
     corner_masses: &[f64],
     motions: Vec<NodeMotion>,
     models: Vec<Box<dyn crate::model::ForceModel<T>>>,
+    volumes: Vec<KeptVolume>,
 ) -> Result<BodyState<T>, BodyError> {
     let nodes = mesh.nodes().len();
     let (mut masses, mut cells_at_node) = (vec![0.0; nodes], vec![0; nodes]);
@@ -434,38 +458,8 @@ fn initial_state<T: Scalar>(
         squared_frequency: None,
         past: PastState::default(),
         tractions: Vec::new(),
+        volumes,
         heat: vec![T::ZERO; mesh.cell_count()],
         seared: vec![T::ZERO; nodes],
     })
-}
-
-impl Boundary {
-    fn new(mesh: &VolumeMesh) -> Self {
-        let faces = match mesh {
-            VolumeMesh::Tet(mesh) => TetTopology::new(mesh).faces,
-            VolumeMesh::Hex(mesh) => {
-                let halves = |face: Face<4>| {
-                    let [a, b, c, d] = face.nodes;
-                    [[a, b, c], [a, c, d]].map(|nodes| Face { nodes, cells: face.cells })
-                };
-                mesh.faces().into_iter().flat_map(halves).collect()
-            }
-        };
-        Self { faces }
-    }
-
-    fn surface<'a>(&'a self, removed: &'a [bool]) -> impl Iterator<Item = SurfaceTriangle> + 'a {
-        let there = |cell: u32| !removed[cell as usize];
-        let triangle = move |face: &Face| {
-            let [a, b, c] = face.nodes;
-            let (first, second) = face.cells;
-            match (there(first), second.map(there)) {
-                (true, None) => Some(SurfaceTriangle { nodes: [a, b, c], cut: false }),
-                (true, Some(false)) => Some(SurfaceTriangle { nodes: [a, b, c], cut: true }),
-                (false, Some(true)) => Some(SurfaceTriangle { nodes: [a, c, b], cut: true }),
-                _ => None,
-            }
-        };
-        self.faces.iter().filter_map(triangle)
-    }
 }

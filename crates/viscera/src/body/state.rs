@@ -1,9 +1,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::Removals;
+use crate::constraint::KeptVolume;
 use crate::contact::Traction;
 use crate::math::{Scalar, Vec3};
 use crate::model::ForceModel;
+use crate::solver::Reach;
 
 /// How a node moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +22,8 @@ pub enum NodeMotion {
     Held(u32),
     /// No longer: every cell around it was removed.
     Retired,
+    /// With the boundary of the pre-computed part that it lies in.
+    Following,
 }
 
 /// A node that is not free, as it was before all nodes were moved as if they were: explicit steps move free nodes in whole
@@ -67,6 +71,8 @@ pub struct BodyState<T: Scalar> {
     pub past: PastState<T>,
     /// Friction of tools at the end of the last implicit step.
     pub tractions: Vec<Traction>,
+    /// What is to be kept of the volumes that are kept exactly.
+    pub volumes: Vec<KeptVolume>,
     /// Heat that cells have taken in [J].
     pub heat: Vec<T>,
     /// How far nodes are burnt: 0 fresh, 1 on the rim of a burnt cut.
@@ -123,6 +129,7 @@ impl<T: Scalar> Clone for BodyState<T> {
             squared_frequency: self.squared_frequency,
             past: self.past.clone(),
             tractions: with_room(&self.tractions),
+            volumes: self.volumes.clone(),
             heat: self.heat.clone(),
             seared: self.seared.clone(),
         }
@@ -137,9 +144,11 @@ fn with_room(tractions: &Vec<Traction>) -> Vec<Traction> {
 }
 
 impl<T: Scalar> BodyState<T> {
-    /// How many rings of cells around a node its force depends on.
-    pub(crate) fn rings(&self) -> usize {
-        self.models.iter().map(|model| model.rings()).max().unwrap_or(1)
+    /// Which nodes know each other's forces.
+    pub(crate) fn reach(&self) -> Reach<'_> {
+        let rings = self.models.iter().map(|model| model.rings()).max().unwrap_or(1);
+        let coupled = self.models.iter().map(|model| model.coupled()).find(|coupled| !coupled.is_empty());
+        Reach { rings, coupled: coupled.unwrap_or(&[]) }
     }
 
     /// Says that the positions were changed: forces and frequency have to be found anew.
@@ -168,6 +177,7 @@ pub(crate) struct MotionBackup<T> {
     squared_frequency: Option<f64>,
     past: PastState<T>,
     tractions: Vec<Traction>,
+    volumes: Vec<KeptVolume>,
 }
 
 impl<T: Scalar> MotionBackup<T> {
@@ -189,6 +199,7 @@ impl<T: Scalar> MotionBackup<T> {
         self.squared_frequency = state.squared_frequency;
         self.past.copy_from(&state.past);
         self.tractions.clone_from(&state.tractions);
+        self.volumes.clone_from(&state.volumes);
     }
 
     /// Asks for memory for so many more contacts.
@@ -212,5 +223,6 @@ impl<T: Scalar> MotionBackup<T> {
         state.squared_frequency = self.squared_frequency;
         state.past.copy_from(&self.past);
         state.tractions.clone_from(&self.tractions);
+        state.volumes.clone_from(&self.volumes);
     }
 }

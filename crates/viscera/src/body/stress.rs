@@ -49,9 +49,10 @@ impl<T: Scalar> SimulatedBody<T> {
         (1.5 * (stress.squared_norm() - trace * trace / 3.0)).max(0.0).sqrt()
     }
 
-    /// Whether the model takes the rotation out before it asks the law.
+    /// Whether the model takes the rotation out before it asks the law, or asks no law, and that of the turned cell is what is shown.
     fn turns_cells(&self) -> bool {
-        matches!(self.model, ModelKind::Corotational | ModelKind::StiffnessWarping)
+        use ModelKind::{Corotational, MassSpring, ShapeMemory, StiffnessWarping};
+        matches!(self.model, Corotational | StiffnessWarping | MassSpring | ShapeMemory)
     }
 }
 

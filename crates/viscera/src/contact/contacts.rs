@@ -34,8 +34,12 @@ pub struct Contact {
     /// Stiffness of the spring that stands for the contact in an implicit step [N/m]; 0 until it is known.
     pub(super) stiffness: f64,
     pub(super) is_active: bool,
+    /// Whether it has opened within the step.
+    pub(super) has_opened: bool,
     /// Share of the friction of sticking that the cone lets through.
     pub(super) grip: f64,
+    /// Stiffness across the normal that a new contact begins with where its rod slips [N/m]; infinite where it sticks.
+    pub(super) slipping: f64,
     /// Friction when that was last decided [N].
     pub(super) tried: f64,
     /// Friction at the beginning of an implicit step [N].
@@ -170,7 +174,9 @@ impl Contacts {
                     drag: Point::ZERO,
                     stiffness: 0.0,
                     is_active: false,
+                    has_opened: false,
                     grip: 1.0,
+                    slipping: f64::INFINITY,
                     tried: 0.0,
                     before: Point::ZERO,
                 });
@@ -190,7 +196,7 @@ impl Contacts {
     }
 
     /// Adds what the contacts do in `duration` [s], with impulses or forces as they are now, to the tools' loads.
-    pub(super) fn account(&mut self, rods: &[MovingCapsule], duration: f64) {
+    pub(crate) fn account(&mut self, rods: &[MovingCapsule], duration: f64) {
         self.loads.iter_mut().for_each(|load| load.points = 0);
         for contact in &self.list {
             let impulse = (contact.normal * contact.push + contact.drag) * duration;
@@ -201,9 +207,15 @@ impl Contacts {
         }
     }
 
-    /// Friction that an implicit step begins with. Contacts that were there in the one before go on with theirs; others slip as well as
-    /// the one that slips best on their rod: where tissue slides, it comes to new contacts all the time, and one that stuck held it back.
-    pub(crate) fn find_before(&mut self, tractions: &[Traction], rods: &[MovingCapsule]) {
+    /// Friction that an implicit step begins with, for contacts that have just been found. Those that were there in the step before go on
+    /// with theirs. Where the others of a rod slip, a new one slips as they do, with their mean friction over the way that it goes when
+    /// nodes go by their `increment` [m]: tissue that slides comes to new contacts all the time, and each that stuck at first held it back.
+    pub(crate) fn find_before(
+        &mut self,
+        tractions: &[Traction],
+        rods: &[MovingCapsule],
+        increment: impl Fn(u32) -> Point,
+    ) {
         for place in 0..self.list.len() {
             let contact = &self.list[place];
             if contact.stiffness > 0.0 {
@@ -212,12 +224,19 @@ impl Contacts {
             let rod = rods[contact.rod as usize];
             let of_rod = || tractions.iter().filter(|old| old.is_of_rod(rod.tool, rod.part));
             let known = of_rod().find(|old| old.is_of(contact.feature));
-            let others = self.list.iter().filter(|other| other.rod == contact.rod && other.stiffness > 0.0);
-            let slippery = others.map(|other| other.grip).chain(of_rod().map(Traction::grip)).fold(1.0, f64::min);
+            let (count, sum) = of_rod()
+                .filter(|old| old.grip() < 1.0)
+                .fold((0.0, 0.0), |(count, sum), old| (count + 1.0, sum + old.force().norm()));
+            let way = contact.across(contact.slide(&increment)).norm();
             let contact = &mut self.list[place];
-            contact.grip = known.map_or(slippery, Traction::grip);
-            let force = known.map_or(Point::ZERO, Traction::force);
-            contact.before = force - contact.normal * contact.normal.dot(force);
+            match known {
+                Some(known) => {
+                    contact.grip = known.grip();
+                    contact.before = contact.across(known.force());
+                }
+                None if count > 0.0 && way > 0.0 => contact.slipping = sum / (count * way),
+                None => {}
+            }
         }
     }
 

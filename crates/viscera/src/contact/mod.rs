@@ -8,11 +8,13 @@
 //!   the tissue, so the stable step stays what it is.
 //! * Implicit steps take stiff springs that push and never pull (`springs`), as stiff as some twenty times the diagonal of the
 //!   matrix at the nodes that touch.
+//! * Bodies that answer statically feel pushes, found through their responses (`pushes`): exact, and without friction.
 
 mod capsule;
 mod closest;
 mod contacts;
 mod impulses;
+mod pushes;
 mod springs;
 mod sweep;
 mod tool_frame;
@@ -21,6 +23,7 @@ pub use capsule::Capsule;
 pub(crate) use closest::distance_to_triangle;
 pub use contacts::{Contact, Contacts, ToolLoad};
 pub(crate) use impulses::Nodes;
+pub(crate) use pushes::PushMemory;
 pub use springs::Traction;
 pub use sweep::MovingCapsule;
 pub use tool_frame::ToolFrame;

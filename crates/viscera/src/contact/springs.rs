@@ -63,9 +63,14 @@ impl Traction {
 
 impl Contact {
     /// d − u.
-    fn slide(&self, increment: &impl Fn(u32) -> Point) -> Point {
+    pub(super) fn slide(&self, increment: &impl Fn(u32) -> Point) -> Point {
         let of = |i: usize| increment(self.nodes[i]) * self.weights[i];
         of(0) + of(1) + of(2) - self.way
+    }
+
+    /// The part of a vector across the normal.
+    pub(super) fn across(&self, vector: Point) -> Point {
+        vector - self.normal * self.normal.dot(vector)
     }
 
     /// Stiffness along the normal and across it.
@@ -74,10 +79,14 @@ impl Contact {
         if self.is_active { (self.stiffness, across) } else { (0.0, 0.0) }
     }
 
+    fn push_after(&self, slide: Point) -> f64 {
+        -self.stiffness * (self.gap + self.normal.dot(slide))
+    }
+
     /// The force on the tissue.
     fn set_force(&mut self, slide: Point) {
         if self.is_active {
-            self.push = -self.stiffness * (self.gap + self.normal.dot(slide));
+            self.push = self.push_after(slide);
             self.drag = self.friction_of_sticking(slide) * self.grip;
         } else {
             (self.push, self.drag) = (0.0, Point::ZERO);
@@ -85,12 +94,7 @@ impl Contact {
     }
 
     fn friction_of_sticking(&self, slide: Point) -> Point {
-        if self.friction > 0.0 {
-            let across = slide - self.normal * self.normal.dot(slide);
-            self.before - across * self.stiffness
-        } else {
-            Point::ZERO
-        }
+        if self.friction > 0.0 { self.before - self.across(slide) * self.stiffness } else { Point::ZERO }
     }
 }
 
@@ -98,19 +102,28 @@ impl Contacts {
     /// Says which contacts push and how well they stick when each node goes by its `increment` [m]; gives whether that is news.
     pub(crate) fn decide(&mut self, increment: impl Fn(u32) -> Point) -> bool {
         let mut news = false;
-        for contact in &mut self.list {
+        for number in 0..self.list.len() {
+            let contact = &self.list[number];
             let slide = contact.slide(&increment);
             let is_active = contact.gap + contact.normal.dot(slide) < 0.0;
+            let closes_again = is_active && contact.has_opened && !contact.is_active;
+            let most_push = if closes_again { self.mean_push(number, &increment) } else { f64::INFINITY };
+            let contact = &mut self.list[number];
+            contact.has_opened |= contact.is_active && !is_active;
             news |= std::mem::replace(&mut contact.is_active, is_active) != is_active;
             contact.set_force(slide);
             if is_active && contact.stiffness > 0.0 && contact.friction > 0.0 {
-                let (size, most) = (contact.friction_of_sticking(slide).norm(), contact.friction * contact.push);
+                let size = contact.friction_of_sticking(slide).norm();
+                let most = contact.friction * contact.push.min(most_push);
                 let force = contact.grip * size;
                 // A softer spring that takes up as much as before still holds what ought to slip: on a slope little steeper than the cone
                 // one secant after the other would take a dozen solves to let it go.
                 let holds = contact.grip < 1.0 && force > HOLDS * contact.tried && force > most;
-                let grip =
-                    if size <= most { 1.0 } else { contact.grip * (most / force).powi(if holds { FASTER } else { 1 }) };
+                let grip = match (size <= most, holds) {
+                    (true, _) => 1.0,
+                    (_, true) => contact.grip * (most / force).powi(FASTER),
+                    _ => most / size,
+                };
                 contact.tried = force;
                 news |= (grip - contact.grip).abs() * size > SETTLED * most;
                 contact.grip = grip;
@@ -118,6 +131,18 @@ impl Contacts {
             }
         }
         news
+    }
+
+    /// Mean push of the other contacts on the rod of one [N]. A contact that opened and closes again was found as deep as tissue goes
+    /// without it: friction after that push held a sliding block like another block, lifted its end, and opened the contact again.
+    fn mean_push(&self, number: usize, increment: &impl Fn(u32) -> Point) -> f64 {
+        let pushes =
+            self.list.iter().enumerate().filter(|(other, contact)| {
+                *other != number && contact.rod == self.list[number].rod && contact.is_active
+            });
+        let pushes = pushes.map(|(_, contact)| contact.push_after(contact.slide(increment)).max(0.0));
+        let (count, sum) = pushes.fold((0.0, 0.0), |(count, sum), push| (count + 1.0, sum + push));
+        if count > 0.0 { sum / count } else { f64::INFINITY }
     }
 
     /// Sets the stiffness of contacts that have none yet. `diagonal` gives what the matrix has for a node on its diagonal
@@ -134,6 +159,7 @@ impl Contacts {
                 .filter_map(|(&node, &weight)| diagonal(node).map(|diagonal| weight * weight / diagonal))
                 .sum();
             contact.stiffness = if compliance > 0.0 { STIFFER / compliance } else { 0.0 };
+            contact.grip = contact.grip.min(contact.slipping / contact.stiffness);
             contact.stiffness > 0.0
         });
     }

@@ -20,10 +20,10 @@ impl<T: Scalar> SimulatedBody<T> {
         removable.clear();
     }
 
-    /// Removes the cells in the list that are still there, and leaves just these in it.
+    /// Removes the cells in the list that are still there and can be cut away, and leaves just these in it.
     fn take_out(&mut self, cells: &mut Vec<u32>) {
+        cells.retain(|&cell| self.can_lose(cell) && !std::mem::replace(&mut self.state.removed[cell as usize], true));
         let state = &mut self.state;
-        cells.retain(|&cell| !std::mem::replace(&mut state.removed[cell as usize], true));
         if cells.is_empty() {
             return;
         }
@@ -47,6 +47,7 @@ impl<T: Scalar> SimulatedBody<T> {
         }
         self.frequency.remove(cells);
         state.positions_changed();
+        self.cut_volumes();
         self.update_skin();
     }
 }

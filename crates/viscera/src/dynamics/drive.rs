@@ -18,18 +18,25 @@ pub struct Drive<'a, T> {
 impl<T: Scalar> Drive<'_, T> {
     /// Where a node that is at `position` has to be at the end of the step [m], in the directions that are not left to the
     /// forces; none for one that forces move.
-    pub(super) fn target(&self, body: &SimulatedBody<T>, node: usize, position: Vec3<T>) -> Option<Vec3<T>> {
+    pub(crate) fn target(&self, body: &SimulatedBody<T>, node: usize, position: Vec3<T>) -> Option<Vec3<T>> {
         let state = &body.state;
         match state.motions[node] {
-            NodeMotion::Free => None,
-            NodeMotion::Fixed | NodeMotion::Retired => Some(position),
-            NodeMotion::Prescribed(curve) => {
-                Some(body.rest[node] + body.prescribed[curve as usize].at(self.end).cast())
-            }
-            NodeMotion::Guided(guide) => Some(body.rest[node] + body.guides.displacement(guide, self.end).cast()),
+            NodeMotion::Fixed | NodeMotion::Retired | NodeMotion::Following => Some(position),
             NodeMotion::Held(instrument) => {
                 Some(self.frames[instrument as usize].at_end(state.grips[node].cast()).cast())
             }
+            _ => body.driven_to(node, self.end),
+        }
+    }
+}
+
+impl<T: Scalar> SimulatedBody<T> {
+    /// Where a node has to be at `time` [s] by the body's own prescribed motions [m]; none for one that has none.
+    pub(super) fn driven_to(&self, node: usize, time: f64) -> Option<Vec3<T>> {
+        match self.state.motions[node] {
+            NodeMotion::Prescribed(curve) => Some(self.rest[node] + self.prescribed[curve as usize].at(time).cast()),
+            NodeMotion::Guided(guide) => Some(self.rest[node] + self.guides.displacement(guide, time).cast()),
+            _ => None,
         }
     }
 }

@@ -36,10 +36,18 @@ pub fn substeps_for(step: f64, squared_frequency: f64) -> f64 {
 }
 
 impl<T: Scalar> SimulatedBody<T> {
-    /// Longest stable step of the explicit scheme as the body is now [s]; infinite where nothing vibrates.
+    /// Longest stable step of the explicit scheme as the body is now [s]; infinite where nothing vibrates, and where it does not move in
+    /// time.
     pub fn stable_step(&self) -> f64 {
+        if self.answer.is_some() {
+            return f64::INFINITY;
+        }
         let positions = &self.state.positions;
-        let measure = || self.frequency.squared_frequency(positions, &mut Scratch::new(positions.len()));
+        let measure = || {
+            let mut scratch = Scratch::new(positions.len());
+            let of_tissue = self.frequency.squared_frequency(positions, &mut scratch);
+            of_tissue + self.muscles.squared_frequency(&self.state.masses, &self.state.removed, &mut scratch.forces)
+        };
         stable_step(self.state.squared_frequency.unwrap_or_else(measure))
     }
 
@@ -95,7 +103,7 @@ pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, 
 pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     body.update_internal_forces(stages);
     // Weights do not change within a step.
-    if !body.loads.is_empty() {
+    if !(body.loads.is_empty() && body.muscles.is_empty()) {
         stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
     }
     stages.run(Stage::KickAndDrift, || kick_again(body, dt, drive));

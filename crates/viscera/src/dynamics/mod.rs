@@ -1,5 +1,6 @@
 //! How bodies move in time.
 
+pub mod answer;
 mod drive;
 pub mod explicit;
 mod hold;

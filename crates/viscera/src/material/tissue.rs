@@ -47,6 +47,15 @@ impl Tissue {
         &self.values[law * self.stride..(law + 1) * self.stride]
     }
 
+    /// The tissue of these cells, in their order.
+    pub(crate) fn of_cells(&self, cells: &[u32]) -> Self {
+        if self.uniform {
+            return self.clone();
+        }
+        let values = cells.iter().flat_map(|&cell| self.values(cell as usize)).copied().collect();
+        Self { values, ..self.clone() }
+    }
+
     /// λ, μ, fibres of the law in `cell` at rest.
     pub fn at_rest(&self, cell: usize) -> RestStiffness {
         struct AtRest<'a>(&'a [f64]);

@@ -152,4 +152,15 @@ impl VolumeMesh {
             Self::Hex(mesh) => mesh.size(),
         }
     }
+
+    /// Checks that there are cells, that their nodes exist and that every coordinate is finite.
+    ///
+    /// # Errors
+    /// As [`Mesh::check_indices`].
+    pub fn check_indices(&self) -> Result<(), MeshError> {
+        match self {
+            Self::Tet(mesh) => mesh.check_indices(),
+            Self::Hex(mesh) => mesh.check_indices(),
+        }
+    }
 }

@@ -3,17 +3,7 @@
 use fearless_simd::Simd;
 
 use crate::math::{Lanes, MAX_LANES, Mat3, Scalar, Vec3};
-
-/// Takes the 3×3 blocks of a matrix that has a row and a column of blocks for every node.
-pub trait BlockSink<T> {
-    /// Adds `block` at the nodes (`row`, `column`).
-    fn add(&mut self, row: u32, column: u32, block: Mat3<T>);
-
-    /// Whether it keeps the blocks of the diagonal only, so that models may leave out the others.
-    fn keeps_diagonal_only(&self) -> bool {
-        false
-    }
-}
+use crate::solver::BlockSink;
 
 /// Takes the blocks of the diagonal, one for each node, and drops the others.
 pub(crate) struct DiagonalSink<'a, T>(pub(crate) &'a mut [Mat3<T>]);

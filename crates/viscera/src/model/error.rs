@@ -1,6 +1,7 @@
 use super::ModelKind;
+use super::precomputed::ResponsesError;
 use crate::material::{LawKind, MaterialError};
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, RegionError};
 
 /// Why a model cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,6 +34,12 @@ pub enum ModelError {
         /// What would do.
         range: &'static str,
     },
+    /// The region that is to move selects nothing, or cannot.
+    #[error("the part that moves: {0}")]
+    Region(Box<RegionError>),
+    /// There are no responses for the body.
+    #[error(transparent)]
+    Responses(#[from] ResponsesError),
     /// The tissue does not fit the mesh.
     #[error(transparent)]
     Material(#[from] MaterialError),

@@ -81,7 +81,7 @@ pub(crate) fn squared_frequency_at_rest<L: Law<f64>>(law: &L, points: &[(&[Vec3<
 
 /// Largest eigenvalue of a positive semi-definite matrix, bounded from above: λ_max ≤ (tr Aⁿ)^(1/n) ≤ size^(1/n) λ_max,
 /// with n = 128 after seven squarings.
-fn largest_eigenvalue_bound(mut matrix: Vec<f64>, size: usize) -> f64 {
+pub(crate) fn largest_eigenvalue_bound(mut matrix: Vec<f64>, size: usize) -> f64 {
     let mut squared = vec![0.0; matrix.len()];
     let (mut logarithm, mut power) = (0.0, 1.0);
     for _ in 0..7 {

@@ -15,7 +15,7 @@ use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
 
-const LAWS: &[LawKind] = &[LawKind::LinearElastic, LawKind::TransverseLinear];
+pub(super) const LAWS: &[LawKind] = &[LawKind::LinearElastic, LawKind::TransverseLinear];
 
 /// The linear tensor-mass model of linear tissue, with or without fibres, on tetrahedra.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,8 @@ impl LinearTensorMass {
         purpose: "small displacements at the lowest cost; swells when it is bent or turned",
         hexahedra: false,
         laws: LAWS,
+        no_implicit: None,
+        no_cutting: None,
     };
 
     /// A model of `tissue`.

@@ -2,33 +2,47 @@
 
 mod block_sink;
 mod block_table;
+mod checked_cell;
 pub mod corotational;
 mod error;
 pub mod frequency;
+pub mod hybrid;
 pub mod linear_tensor_mass;
+pub mod mass_spring;
 pub mod nodally_integrated;
 mod patch;
+mod penalty_frequency;
 mod precision;
+pub mod precomputed;
 mod registry;
 mod sections;
+pub mod shape_memory;
 pub mod tensor_mass;
 mod tet_loop;
 pub mod total_lagrangian;
 pub mod volume_penalty;
 
-pub use block_sink::BlockSink;
+pub use crate::solver::BlockSink;
 use block_sink::DiagonalSink;
 pub use corotational::{Corotational, StiffnessWarping};
 pub use error::ModelError;
+pub use hybrid::Hybrid;
 pub use linear_tensor_mass::LinearTensorMass;
+pub use mass_spring::MassSpring;
 pub use nodally_integrated::NodallyIntegrated;
 pub use precision::Precision;
+pub use precomputed::Precomputed;
 pub use registry::{Claims, ModelInfo, ModelKind};
+pub use shape_memory::ShapeMemory;
 pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
+use std::sync::Arc;
+
 use self::frequency::{FrequencyBound, frequency_bound};
+use self::hybrid::Condensation;
+use self::precomputed::{Responses, Supports};
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
 use crate::material::Tissue;
@@ -98,6 +112,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// How many rings of cells around a node its force depends on: 1, unless the model averages over neighbours.
     fn rings(&self) -> usize {
         1
+    }
+
+    /// Nodes that all know each other's forces, however far they are apart.
+    fn coupled(&self) -> &[u32] {
+        &[]
     }
 
     /// Size of the numbers that one evaluation of the forces reads from the model [bytes].
@@ -240,6 +259,28 @@ pub trait ModelRecipe: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// As [`ModelRecipe::build_single`].
     fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError>;
+
+    /// The recipe with what it finds out about a body that is held so, for models that depend on it; none for all others.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a part of the body is held by nothing, or the tissue does not fit.
+    fn supported(&self, _supports: &Supports<'_>) -> Result<Option<Box<dyn ModelRecipe>>, ModelError> {
+        Ok(None)
+    }
+
+    /// The part of the body that follows its boundary, once the recipe knows the supports; none for models without one.
+    fn condensation(&self) -> Option<&Arc<Condensation>> {
+        None
+    }
+
+    /// How a body that is held so answers forces, where it does not move in time but rests at the end of every step; none for models
+    /// that move.
+    ///
+    /// # Errors
+    /// [`ModelError`] where nothing holds the body, or the responses that the model was given are not those of such a body.
+    fn responses(&self, _supports: &Supports<'_>) -> Result<Option<Arc<Responses>>, ModelError> {
+        Ok(None)
+    }
 
     /// The bound of the body's highest frequency in single precision, for one density [kg/m³] or one for each cell, and the
     /// volume-keeping stiffness κ [Pa]. That of the law, unless the model makes something else of it.

@@ -1,7 +1,8 @@
 //! The only list of force models.
 
 use super::{
-    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, StiffnessWarping, TensorMass, TotalLagrangian,
+    Corotational, Hybrid, LinearTensorMass, MassSpring, ModelRecipe, NodallyIntegrated, Precomputed, ShapeMemory,
+    StiffnessWarping, TensorMass, TotalLagrangian,
 };
 use crate::material::{LawKind, Tissue};
 
@@ -16,6 +17,10 @@ pub struct ModelInfo {
     pub hexahedra: bool,
     /// The laws that it computes.
     pub laws: &'static [LawKind],
+    /// Why implicit steps and equilibria are not for it, and what to take instead; none where they are.
+    pub no_implicit: Option<&'static str>,
+    /// Why no cell can be cut out of it, and what to take instead; none where cells can.
+    pub no_cutting: Option<&'static str>,
 }
 
 /// What holds for a model of a law with its default settings; the conformance suites test all of it.
@@ -29,6 +34,8 @@ pub struct Claims {
     pub force_free: bool,
     /// Internal forces have no net torque.
     pub torque_free: bool,
+    /// Homogeneous deformation leaves inner nodes without force, whatever the mesh.
+    pub passes_patch_test: bool,
     /// Forces are the gradient of the energy.
     pub conservative: bool,
     /// Products are the derivative of the forces.
@@ -46,6 +53,7 @@ impl Claims {
             objective,
             force_free: true,
             torque_free: objective,
+            passes_patch_test: true,
             conservative: true,
             exact_products: true,
             symmetric_products: true,
@@ -72,6 +80,11 @@ macro_rules! models {
         impl ModelKind {
             /// Every model there is.
             pub const ALL: &'static [Self] = &[$(Self::$recipe),+];
+
+            /// Whether its bodies move in time; those of the others rest at the end of every step, and something has to hold them.
+            pub fn moves(self) -> bool {
+                self != Self::Precomputed
+            }
 
             /// What it is.
             pub fn info(self) -> ModelInfo {
@@ -104,6 +117,10 @@ models!(
     NodallyIntegrated: NodallyIntegrated::claims,
     Corotational: Corotational::claims,
     StiffnessWarping: StiffnessWarping::claims,
+    MassSpring: MassSpring::claims,
+    ShapeMemory: ShapeMemory::claims,
+    Precomputed: whatever_the_cells,
+    Hybrid: whatever_the_cells,
 );
 
 impl std::fmt::Display for ModelKind {

@@ -4,7 +4,7 @@ use super::vectors::dot_of;
 use super::{Filter, LinearOperator, Preconditioner, Size};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
-use crate::model::BlockSink;
+use crate::solver::BlockSink;
 
 /// Block-Jacobi preconditioner: the inverses of the 3×3 blocks on the diagonal, one for each node.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 use super::LinearOperator;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::model::BlockSink;
+use crate::solver::BlockSink;
 
 /// A sparse matrix of 3×3 blocks, row after row: a block for every two nodes whose forces know each other.
 #[derive(Clone, Debug)]
@@ -14,12 +14,11 @@ pub struct BlockMatrix<T> {
 }
 
 impl<T: Scalar> BlockMatrix<T> {
-    /// The zero matrix with the pattern of `mesh`, for models whose forces reach over this many `rings` of cells
-    /// ([`ForceModel::rings`](crate::model::ForceModel::rings)).
-    pub fn new(mesh: &VolumeMesh, rings: usize) -> Self {
+    /// The zero matrix with the pattern of `mesh`, for models whose forces reach so far.
+    pub fn new<'a>(mesh: &VolumeMesh, reach: impl Into<Reach<'a>>) -> Self {
         let mut starts = vec![0];
         let mut columns = Vec::new();
-        for row in &pattern(mesh, rings) {
+        for row in &pattern(mesh, reach.into()) {
             columns.extend_from_slice(row);
             starts.push(columns.len() as u32);
         }
@@ -48,20 +47,50 @@ impl<T: Scalar> BlockMatrix<T> {
         self.find(row, column).map_or(Mat3::ZERO, |index| self.blocks[index])
     }
 
+    /// Writes A x to `out`.
+    pub(crate) fn times(&self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
+        for (row, out) in out.iter_mut().enumerate() {
+            let mut sum = Vec3::ZERO;
+            for (column, block) in self.row(row) {
+                sum += *block * x[column as usize];
+            }
+            *out = sum;
+        }
+    }
+
     fn find(&self, row: usize, column: usize) -> Option<usize> {
         let (start, end) = (self.starts[row] as usize, self.starts[row + 1] as usize);
         self.columns[start..end].binary_search(&(column as u32)).ok().map(|offset| start + offset)
     }
 }
 
-/// The nodes within so many rings of cells around each node, itself included, ascending.
-pub(super) fn pattern(mesh: &VolumeMesh, rings: usize) -> Vec<Vec<u32>> {
+/// Which nodes know each other's forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach<'a> {
+    /// Those within so many rings of cells ([`ForceModel::rings`](crate::model::ForceModel::rings)).
+    pub rings: usize,
+    /// Besides, all of these ([`ForceModel::coupled`](crate::model::ForceModel::coupled)).
+    pub coupled: &'a [u32],
+}
+
+impl From<usize> for Reach<'_> {
+    fn from(rings: usize) -> Self {
+        Self { rings, coupled: &[] }
+    }
+}
+
+/// The nodes that each node knows, itself included, ascending.
+pub(super) fn pattern(mesh: &VolumeMesh, reach: Reach<'_>) -> Vec<Vec<u32>> {
     let ring = neighbours(mesh);
     let mut pattern = ring.clone();
-    for _ in 1..rings {
+    for _ in 1..reach.rings {
         let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
         pattern = pattern.iter().map(beyond).collect();
         pattern.iter_mut().for_each(sort);
+    }
+    for &node in reach.coupled {
+        pattern[node as usize].extend_from_slice(reach.coupled);
+        sort(&mut pattern[node as usize]);
     }
     pattern
 }
@@ -98,12 +127,6 @@ impl<T: Scalar> BlockSink<T> for BlockMatrix<T> {
 
 impl<T: Scalar> LinearOperator<T> for BlockMatrix<T> {
     fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]) {
-        for (row, out) in out.iter_mut().enumerate() {
-            let mut sum = Vec3::ZERO;
-            for (column, block) in self.row(row) {
-                sum += *block * x[column as usize];
-            }
-            *out = sum;
-        }
+        self.times(x, out);
     }
 }

@@ -10,7 +10,7 @@ use crate::math::Vec3;
 pub struct Iterative {
     /// Where to stop: residual over right-hand side, in the norm of the preconditioner [> 0, < 1].
     tolerance: f64,
-    memory: Option<(ConjugateGradient<f64>, BlockJacobi<f64>)>,
+    preconditioner: Option<BlockJacobi<f64>>,
 }
 
 /// The most iterations for each unknown: rounding keeps the directions from being conjugate, and one is not enough.
@@ -19,7 +19,7 @@ const ITERATIONS: u32 = 10;
 impl Iterative {
     /// A solver that stops at this relative residual [> 0, < 1].
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, memory: None }
+        Self { tolerance, preconditioner: None }
     }
 }
 
@@ -36,27 +36,21 @@ fn iterations(system: &System) -> u32 {
 
 impl LinearSolver for Iterative {
     fn analyse(&mut self, system: &System) {
-        let nodes = system.nodes();
-        self.memory = Some((ConjugateGradient::new(nodes, iterations(system)), BlockJacobi::new(nodes)));
+        self.preconditioner = Some(BlockJacobi::new(system.nodes()));
     }
 
     fn factor(&mut self, system: &System) -> Result<(), SolverError> {
-        if self.memory.is_none() {
-            self.analyse(system);
+        let preconditioner = self.preconditioner.get_or_insert_with(|| BlockJacobi::new(system.nodes()));
+        for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
+            *block = system.matrix.block(node, node);
         }
-        if let Some((_, preconditioner)) = &mut self.memory {
-            for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
-                *block = system.matrix.block(node, node);
-            }
-            preconditioner.invert(&vec![0.0; system.nodes()], &system.filters, &Executor::serial());
-        }
+        preconditioner.invert(&vec![0.0; system.nodes()], &system.filters, &Executor::serial());
         Ok(())
     }
 
-    fn solve(&mut self, system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError> {
-        let Some((conjugate_gradient, preconditioner)) = &mut self.memory else {
-            return Err(SolverError::NotPositiveDefinite);
-        };
+    fn solve(&self, system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError> {
+        let mut preconditioner = self.preconditioner.clone().ok_or(SolverError::NotPositiveDefinite)?;
+        let mut conjugate_gradient = ConjugateGradient::new(right.len(), iterations(system));
         let zeros = vec![Vec3::ZERO; right.len()];
         let mut solution = zeros.clone();
         let problem = Problem {
@@ -68,7 +62,7 @@ impl LinearSolver for Iterative {
         };
         let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
         let report =
-            conjugate_gradient.solve(&mut system.matrix.clone(), preconditioner, &problem, stop, &mut solution);
+            conjugate_gradient.solve(&mut system.matrix.clone(), &mut preconditioner, &problem, stop, &mut solution);
         match report.ending {
             Ending::Converged => right.copy_from_slice(&solution),
             Ending::NegativeCurvature => return Err(SolverError::NotPositiveDefinite),

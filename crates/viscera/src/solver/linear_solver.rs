@@ -3,9 +3,9 @@ use crate::math::Vec3;
 
 /// Something that solves K u = f in the free directions of a [`System`], with a symmetric positive definite K.
 ///
-/// The engine has [`Iterative`](super::Iterative); a sparse Cholesky factorisation is in the crate `viscera-direct`, apart
-/// because it takes long to compile.
-pub trait LinearSolver {
+/// The engine has [`Iterative`](super::Iterative), and [`Envelope`](super::Envelope) for a few thousand unknowns; a sparse
+/// Cholesky factorisation is in the crate `viscera-direct`, apart because it takes long to compile.
+pub trait LinearSolver: Sync {
     /// Looks at which blocks and directions there are: once for all systems that share them.
     fn analyse(&mut self, system: &System);
 
@@ -16,11 +16,11 @@ pub trait LinearSolver {
     fn factor(&mut self, system: &System) -> Result<(), SolverError>;
 
     /// Replaces the right-hand side, which has no part in the held directions, by the solution, for the system that was
-    /// factored last.
+    /// factored last. Threads may solve with the same factors at once.
     ///
     /// # Errors
     /// [`SolverError`].
-    fn solve(&mut self, system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError>;
+    fn solve(&self, system: &System, right: &mut [Vec3<f64>]) -> Result<(), SolverError>;
 }
 
 /// Why a system is not solved.

@@ -3,7 +3,10 @@
 
 mod block_jacobi;
 mod block_matrix;
+mod block_sink;
 mod conjugate_gradient;
+mod dense_cholesky;
+mod envelope;
 mod filter;
 mod iterative;
 mod linear_solver;
@@ -13,8 +16,11 @@ mod system;
 mod vectors;
 
 pub use block_jacobi::BlockJacobi;
-pub use block_matrix::BlockMatrix;
+pub use block_matrix::{BlockMatrix, Reach};
+pub use block_sink::BlockSink;
 pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, Stop};
+pub(crate) use dense_cholesky::DenseCholesky;
+pub use envelope::Envelope;
 pub use filter::Filter;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};

@@ -1,6 +1,6 @@
 use super::{BlockMatrix, Filter, LinearOperator};
 use crate::math::{Mat3, Vec3};
-use crate::model::BlockSink;
+use crate::solver::BlockSink;
 
 /// A stiffness matrix and the directions in which each node is free: S K S over the free ones.
 #[derive(Clone, Debug)]

@@ -66,7 +66,8 @@ impl<T: Scalar> World<T> {
     /// after the other.
     ///
     /// # Errors
-    /// [`WorldError::AttachmentNeedsExplicit`]; [`WorldError::AttachedToItself`]; [`WorldError::Body`] for a region without nodes;
+    /// [`WorldError::AttachmentNeedsExplicit`]; [`WorldError::AttachedToItself`]; [`WorldError::AttachedToPrecomputed`];
+    /// [`WorldError::Body`] for a region without nodes;
     /// [`WorldError::TooFarToAttach`] for a node that is nowhere near the other surface. Panics for a body of another world.
     pub fn attach(&mut self, attachment: Attachment) -> Result<AttachmentId, WorldError> {
         let Attachment { body, region, to } = attachment;
@@ -77,6 +78,9 @@ impl<T: Scalar> World<T> {
         }
         if body == to {
             return Err(WorldError::AttachedToItself { body: name });
+        }
+        if let Some(still) = [own, other].into_iter().find(|body| body.answer.is_some() || body.followers.is_some()) {
+            return Err(WorldError::AttachedToPrecomputed { body: still.name.clone(), model: still.model });
         }
         let purpose = "an attachment";
         let nodes = region.nodes(&own.mesh).map_err(|source| {

@@ -2,6 +2,7 @@ use super::step::MAX_SUBSTEPS;
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::{Implicit, Newton, Scheme};
+use crate::dynamics::quasi_static::QuasiStatic;
 use crate::math::Scalar;
 
 /// Settings of a world.
@@ -22,6 +23,9 @@ pub enum Integrator {
     Explicit(Substep),
     /// By one step that the forces at its end decide: stiff tissue and small cells bear long steps.
     Implicit(Implicit),
+    /// From one equilibrium to the next: loads and prescribed motions go on with time, and inertia and damping have no part in it. Every
+    /// body has to be held by something, and tools that touch are refused.
+    QuasiStatic(QuasiStatic),
 }
 
 impl Default for Integrator {
@@ -70,6 +74,10 @@ impl WorldConfig {
                 }
                 None => Ok(()),
             },
+            Integrator::QuasiStatic(settings) => match settings.first_out_of_range() {
+                Some((name, value, range)) => out_of_range(name, value, range),
+                None => Ok(()),
+            },
             Integrator::Explicit(_) => Ok(()),
         }
     }
@@ -79,8 +87,18 @@ impl<T: Scalar> World<T> {
     /// Refuses a body that the integrator cannot move: one that would blow up at the fixed sub-step, or that lacks what the
     /// scheme needs, or has what it does not know.
     pub(super) fn check_integrator(&self, body: &SimulatedBody<T>) -> Result<(), WorldError> {
+        if let (Integrator::Implicit(_) | Integrator::QuasiStatic(_), Some(advice)) =
+            (self.config.integrator, body.model.info().no_implicit)
+        {
+            return Err(WorldError::ModelNeedsExplicit { body: body.name().into(), model: body.model, advice });
+        }
+        if let (Integrator::Implicit(_) | Integrator::QuasiStatic(_), Some(feature)) =
+            (self.config.integrator, body.explicit_feature())
+        {
+            return Err(WorldError::FeatureNeedsExplicit { body: body.name().into(), feature });
+        }
         match self.config.integrator {
-            Integrator::Explicit(_) if body.stiffness_damping > T::ZERO => {
+            Integrator::Explicit(_) | Integrator::QuasiStatic(_) if body.stiffness_damping > T::ZERO => {
                 Err(WorldError::StiffnessDampingNeedsImplicit { body: body.name().into() })
             }
             Integrator::Explicit(Substep::Fixed(substep)) if substep > body.stable_step() => {

@@ -1,5 +1,7 @@
 use crate::body::BodyError;
+use crate::dynamics::quasi_static::StaticError;
 use crate::instrument::InstrumentError;
+use crate::model::ModelKind;
 
 /// Why a world cannot be set up so.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,9 +28,9 @@ pub enum WorldError {
         /// What would do [s].
         stable: f64,
     },
-    /// Explicit steps know no damping of the stiffness: it would cost them their long steps.
+    /// Explicit steps know no damping of the stiffness: it would cost them their long steps. Quasi-static ones know none at all.
     #[error(
-        "body `{body}` has stiffness damping, which explicit steps do not know; take an implicit integrator, or damping by mass"
+        "body `{body}` has stiffness damping, which explicit and quasi-static steps do not know; take an implicit integrator, or damping by mass"
     )]
     StiffnessDampingNeedsImplicit {
         /// Name of the body.
@@ -47,9 +49,45 @@ pub enum WorldError {
         /// Name of the law.
         law: &'static str,
     },
+    /// The model knows nothing that implicit steps could use.
+    #[error("body `{body}`: implicit steps are not for the model `{model}`: {advice}")]
+    ModelNeedsExplicit {
+        /// Name of the body.
+        body: String,
+        /// The model.
+        model: ModelKind,
+        /// Why, and what to do.
+        advice: &'static str,
+    },
+    /// Implicit steps know nothing of what constraints and muscles do.
+    #[error("body `{body}` has {feature}, which implicit steps do not know; take the explicit integrator")]
+    FeatureNeedsExplicit {
+        /// Name of the body.
+        body: String,
+        /// What it has.
+        feature: &'static str,
+    },
+    /// The model cannot lose cells.
+    #[error("body `{body}`: the model `{model}` cannot be cut: {advice}")]
+    ModelCannotBeCut {
+        /// Name of the body.
+        body: String,
+        /// The model.
+        model: ModelKind,
+        /// Why, and what to do.
+        advice: &'static str,
+    },
     /// What the energy–momentum scheme keeps, it keeps only if its equations are solved in full.
     #[error("the energy-momentum scheme keeps nothing when it is linearised: solve it in full, or take another scheme")]
     LinearisedEnergyMomentum,
+    /// A cell of the part that is pre-computed.
+    #[error("body `{body}`: cell {cell} is pre-computed and cannot be cut; let a larger region move")]
+    PrecomputedCell {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: u32,
+    },
     /// A cell that the body does not have.
     #[error("body `{body}` has no cell {cell}: its cells are numbered 0 to {}", cells - 1)]
     MissingCell {
@@ -71,6 +109,22 @@ pub enum WorldError {
         /// Name of the body to which.
         to: String,
     },
+    /// What is pre-computed does not feel the impulses that hold bodies together.
+    #[error(
+        "body `{body}` cannot be attached: nodes of the model `{model}` do not all move by forces; take one whose nodes do"
+    )]
+    AttachedToPrecomputed {
+        /// Name of the body.
+        body: String,
+        /// The model.
+        model: ModelKind,
+    },
+    /// Between equilibria nothing pushes tissue out of a tool's way.
+    #[error(
+        "tools with rigid parts or a bounded grip need tissue that moves, and quasi-static steps go from rest to rest; take an explicit or \
+         implicit integrator, or a grasper with neither jaws nor shaft nor bound"
+    )]
+    ToolsNeedMotion,
     /// A body that is to be attached to itself.
     #[error("body `{body}` cannot be attached to itself; name two bodies")]
     AttachedToItself {
@@ -160,6 +214,20 @@ pub enum StepError {
         /// Length of the step [s].
         step: f64,
     },
+    /// A volume that is to be kept exactly cannot be.
+    #[error(
+        "at {time:.4} s the volume `{volume}` of body `{body}` cannot be kept: {error:.1e} of it is missing or too much; the step is undone. Let more of its nodes move freely, or take it apart from the volumes that share nodes with it"
+    )]
+    VolumeNotKept {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Name of the volume.
+        volume: String,
+        /// (V − V0)/V0 that is left.
+        error: f64,
+    },
     /// The equations of an implicit step were not solved in the iterations that were allowed.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) does not converge: after {iterations} iterations of Newton's \
@@ -177,6 +245,14 @@ pub enum StepError {
         iterations: u32,
         /// What is left of the forces, over those that balance.
         residual: f64,
+    },
+    /// There is no equilibrium to go on to, or none was found.
+    #[error("at {time:.4} s {error}; the step is undone")]
+    NoEquilibrium {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// What was found instead.
+        error: StaticError,
     },
     /// The fixed sub-step has stopped being stable.
     #[error(

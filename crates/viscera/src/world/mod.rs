@@ -9,6 +9,8 @@ mod snapshot;
 mod statics;
 mod step;
 mod step_implicit;
+mod step_quasi_static;
+mod step_static;
 mod succession;
 mod tools;
 
@@ -77,7 +79,8 @@ impl<T: Scalar> World<T> {
     ///
     /// # Errors
     /// [`WorldError::Body`] where the body makes no sense; [`WorldError::UnstableSubstep`] where it cannot be simulated
-    /// at the fixed sub-step that was asked for, with the number that would do; [`WorldError::NoMeanForces`] and
+    /// at the fixed sub-step that was asked for, with the number that would do; [`WorldError::NoMeanForces`],
+    /// [`WorldError::ModelNeedsExplicit`], [`WorldError::FeatureNeedsExplicit`] and
     /// [`WorldError::StiffnessDampingNeedsImplicit`] where it does not fit the integrator.
     pub fn add(&mut self, body: Body) -> Result<BodyId, WorldError>
     where
@@ -89,7 +92,7 @@ impl<T: Scalar> World<T> {
             if settings.scheme.needs_past() {
                 body.reserve_past();
             }
-            self.implicit.push(ImplicitMemory::new(body.mesh(), body.state.rings(), &settings));
+            self.implicit.push(ImplicitMemory::new(body.mesh(), body.state.reach(), &settings));
         }
         let cells = body.mesh().cell_count();
         self.removable.reserve(cells.saturating_sub(self.removable.capacity()));
@@ -148,12 +151,19 @@ impl<T: Scalar> World<T> {
     /// pieces that came loose and were dropped included.
     ///
     /// # Errors
-    /// [`WorldError::MissingCell`] for a number that the body does not have; nothing is removed then.
+    /// [`WorldError::ModelCannotBeCut`]; [`WorldError::MissingCell`] for a number that the body does not have, and
+    /// [`WorldError::PrecomputedCell`] for one of a pre-computed part. Nothing is removed then.
     pub fn remove_cells(&mut self, id: BodyId, cells: &[u32]) -> Result<usize, WorldError> {
         let body = &mut self.bodies[id.0];
+        if let Some(advice) = body.model.info().no_cutting {
+            return Err(WorldError::ModelCannotBeCut { body: body.name().into(), model: body.model, advice });
+        }
         let count = body.mesh().cell_count();
         if let Some(&cell) = cells.iter().find(|&&cell| cell as usize >= count) {
             return Err(WorldError::MissingCell { body: body.name().into(), cell, cells: count });
+        }
+        if let Some(&cell) = cells.iter().find(|&&cell| !body.can_lose(cell)) {
+            return Err(WorldError::PrecomputedCell { body: body.name().into(), cell });
         }
         let before = body.state().removed_count;
         self.removable.clear();

@@ -34,6 +34,8 @@ pub struct BodyObservables {
     pub volume: f64,
     /// (V − V0)/V0 of what is left.
     pub volume_variation: f64,
+    /// Largest |V − V0|/V0 of the volumes that are kept exactly; 0 without any.
+    pub volume_error: f64,
     /// Largest distance of a node from its place at rest [m].
     pub max_displacement: f64,
     /// Force by which fixed and prescribed nodes are held [N].
@@ -51,6 +53,8 @@ pub struct BodyObservables {
     pub nonlinear_nodes: usize,
     /// Whether the kinetic energy has died down to a hundred-millionth of the elastic energy.
     pub at_rest: bool,
+    /// Of a body with a part that is pre-computed: how much its reaction changed in the last step, over its size.
+    pub interface_residual: Option<f64>,
 }
 
 /// Cells that are turned inside out for good: the law of the body cannot tell them from their mirror images.
@@ -214,6 +218,7 @@ impl<T: Scalar> SimulatedBody<T> {
             mass,
             volume,
             volume_variation: if rest_volume > 0.0 { volume / rest_volume - 1.0 } else { 0.0 },
+            volume_error: self.kept_volumes().map(|kept| kept.error.abs()).fold(0.0, f64::max),
             max_displacement: self.max_displacement(),
             reaction,
             removed_cells: state.removed_count,
@@ -222,6 +227,7 @@ impl<T: Scalar> SimulatedBody<T> {
             worst_quality: self.worst_quality(),
             nonlinear_nodes,
             at_rest: kinetic <= REST_RATIO * elastic,
+            interface_residual: self.interface_residual(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::attachment::Aim;
 use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
+use crate::constraint::Unkept;
 use crate::dynamics::implicit::ImplicitReport;
 use crate::dynamics::{Drive, explicit};
 use crate::executor::Executor;
@@ -32,7 +33,7 @@ pub struct StepReport {
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,
-    /// What the solver did, in an implicit step.
+    /// What the solver did, in an implicit step and between two equilibria.
     pub implicit: Option<ImplicitReport>,
 }
 
@@ -87,6 +88,7 @@ impl<T: Scalar> World<T> {
         let span = Span { from: self.time(), to: (self.steps + 1) as f64 * self.config.step };
         stages.run(Stage::Guard, || self.keep());
         let Motion { substeps, retries, implicit } = self.move_bodies(&span, stages).inspect_err(|_| self.undo())?;
+        stages.run(Stage::Response, || self.respond_statically(&span)).inspect_err(|_| self.undo())?;
         stages.run(Stage::Instruments, || self.settle_tools(&span));
         self.settle_attachments();
         let removed_cells = stages.run(Stage::Cutting, || self.cut(&span));
@@ -116,22 +118,27 @@ impl<T: Scalar> World<T> {
         match self.config.integrator {
             Integrator::Explicit(substep) => self.move_explicitly(span, substep, stages),
             Integrator::Implicit(settings) => self.move_implicitly(span, &settings, stages),
+            Integrator::QuasiStatic(settings) => self.move_statically(span, &settings, stages),
         }
     }
 
     /// Moves the bodies with as many sub-steps as it takes.
     fn move_explicitly(&mut self, span: &Span, substep: Substep, stages: Stages) -> Result<Motion, StepError> {
         let mut fastest = stages.run(Stage::FrequencyBound, || self.fastest());
-        let mut reach = 1.0;
+        let (mut reach, mut failure) = (1.0, None);
         for retries in 0..=MAX_RETRIES {
             let parts = stages.run(Stage::Instruments, || self.approach(span, reach));
             let substeps = match self.plan_substeps(substep, fastest) {
                 // What an attempt that ran away says of stiffness means nothing.
-                Err(StepError::TooStiff { .. }) if retries > 0 => return Err(self.diverged()),
+                Err(StepError::TooStiff { .. }) if retries > 0 => {
+                    return Err(failure.unwrap_or_else(|| self.diverged()));
+                }
                 plan => plan?.max(parts),
             };
             self.advance(span, substeps, stages);
             let finite = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
+            failure = self.unkept_volume();
+            let finite = finite && failure.is_none();
             let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_reach()));
             if finite && !within {
                 reach *= WIDER;
@@ -151,13 +158,32 @@ impl<T: Scalar> World<T> {
             }
             self.undo();
         }
-        Err(self.diverged())
+        Err(failure.unwrap_or_else(|| self.diverged()))
+    }
+
+    /// Lets constraints act on the bodies that have any.
+    fn restrain(&mut self, stages: Stages, act: impl Fn(&mut SimulatedBody<T>)) {
+        for body in self.bodies.iter_mut().filter(|body| !body.constraints.is_empty()) {
+            stages.run(Stage::Constraints, || act(body));
+        }
+    }
+
+    /// A volume that could not be kept in the attempt that was just made.
+    fn unkept_volume(&mut self) -> Option<StepError> {
+        let time = self.time();
+        let of_body = |body: &mut SimulatedBody<T>| {
+            let Unkept { volume, error } = body.constraints.unkept.take()?;
+            let volume = body.constraints.volumes[volume].name.clone();
+            Some(StepError::VolumeNotKept { time, body: body.name.clone(), volume, error })
+        };
+        self.bodies.iter_mut().map(of_body).fold(None, Option::or)
     }
 
     /// The body that vibrates fastest.
     fn fastest(&mut self) -> Fastest {
         let mut fastest = Fastest { body: 0, squared_frequency: 0.0 };
-        for (body, simulated) in self.bodies.iter_mut().enumerate() {
+        let moving = self.bodies.iter_mut().enumerate().filter(|(_, body)| body.answer.is_none());
+        for (body, simulated) in moving {
             let squared_frequency = simulated.squared_frequency();
             if squared_frequency > fastest.squared_frequency {
                 fastest = Fastest { body, squared_frequency };
@@ -200,7 +226,7 @@ impl<T: Scalar> World<T> {
         let radius = self.motion.rods.iter().map(|rod| rod.start.radius).fold(0.0, f64::max);
         let fall = Vec3::from(self.config.gravity).norm() * self.config.step;
         let mut touches = false;
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
             let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * (way + radius);
             body.contacts.forget();
             touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach * expected);
@@ -213,7 +239,7 @@ impl<T: Scalar> World<T> {
         self.begin_attachments();
         let dt = self.config.step / f64::from(substeps);
         let gravity = Vec3::from(self.config.gravity).cast();
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
             explicit::begin(body, span.from, gravity, stages);
         }
         for substep in 1..=substeps {
@@ -221,25 +247,27 @@ impl<T: Scalar> World<T> {
             let share = |substep: u32| f64::from(substep) / f64::from(substeps);
             stages.run(Stage::Instruments, || self.move_tools(span, share(substep - 1), share(substep)));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-            for body in &mut self.bodies {
+            for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
                 explicit::drift(body, dt, &drive, stages);
             }
             self.hold_together(dt, Aim::Place);
+            self.restrain(stages, |body| body.restore_places(dt));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-            for body in &mut self.bodies {
+            for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
                 explicit::kick(body, dt, &drive, stages);
             }
             self.hold_together(dt, Aim::Velocity);
+            self.restrain(stages, |body| body.restore_velocities(dt));
         }
     }
 
-    /// Lets instruments remove cells; gives how many went.
+    /// Lets instruments remove cells of the bodies that can be cut; gives how many went.
     fn cut(&mut self, span: &Span) -> usize {
         let mut removed = 0;
         for number in 0..self.instruments.len() {
             let tool = self.tool_use(number, span);
             let Some(instrument) = &self.instruments[number] else { continue };
-            for body in &mut self.bodies {
+            for body in self.bodies.iter_mut().filter(|body| body.model.info().no_cutting.is_none()) {
                 let before = body.state.removed_count;
                 self.removable.clear();
                 instrument.cut(&tool, body, &mut self.removable);

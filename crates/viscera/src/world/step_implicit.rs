@@ -25,7 +25,8 @@ impl<T: Scalar> World<T> {
             let (from, end) = (at(part), if part + 1 == parts { span.to } else { at(part + 1) });
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let dt = self.config.step / f64::from(parts);
-            for (number, (body, memory)) in self.bodies.iter_mut().zip(&mut self.implicit).enumerate() {
+            let all = self.bodies.iter_mut().zip(&mut self.implicit).enumerate();
+            for (number, (body, memory)) in all.filter(|(_, (body, _))| body.answer.is_none()) {
                 // A scheme over two steps knows steps of one length.
                 body.state.past.is_known &= parts == 1;
                 let own =
@@ -57,7 +58,7 @@ impl<T: Scalar> World<T> {
             return 1;
         }
         let mut near = false;
-        for body in &mut self.bodies {
+        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
             let coast = body.fastest_node() * self.config.step + way;
             near |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, coast);
             // What is pushed pushes its neighbours: all of the surface may come to touch.

@@ -85,6 +85,9 @@ impl<T: Scalar> SimulatedBody<T> {
         let cast = |values: &[U]| values.iter().map(|value| T::from_f64(value.to_f64())).collect();
         (state.heat, state.seared) = (cast(&of.heat), cast(&of.seared));
         state.tractions.clone_from(&of.tractions);
+        if state.volumes.len() == of.volumes.len() {
+            state.volumes.clone_from(&of.volumes);
+        }
         state.past.is_known = false;
         state.positions_changed();
         self.update_skin();

@@ -1,6 +1,6 @@
 //! Tools of a world: who leads them, and how they go through a step.
 
-use super::{InstrumentId, World, WorldError};
+use super::{InstrumentId, Integrator, World, WorldError};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::contact::{Capsule, MovingCapsule, ToolFrame};
 use crate::instrument::{Instrument, InstrumentError, Span, ToolInput, ToolPose, ToolState, ToolUse};
@@ -29,9 +29,11 @@ impl<T: Scalar> World<T> {
     /// Adds an instrument.
     ///
     /// # Errors
-    /// [`WorldError::Instrument`] where its settings make no sense.
+    /// [`WorldError::Instrument`] where its settings make no sense; [`WorldError::ToolsNeedMotion`] for one that touches or slips, in a
+    /// quasi-static world.
     pub fn add_instrument(&mut self, instrument: impl Instrument<T> + 'static) -> Result<InstrumentId, WorldError> {
         instrument.check()?;
+        self.check_tool(&instrument)?;
         self.tools.push(ToolState::new(scripted_pose(&instrument, self.time())));
         self.instruments.push(Some(Box::new(instrument)));
         self.reserve_for_tools();
@@ -41,7 +43,7 @@ impl<T: Scalar> World<T> {
     /// Puts another instrument into the place of one: what that held is let go. It keeps pose and hand where a hand leads it.
     ///
     /// # Errors
-    /// [`WorldError::MissingInstrument`] for one that is not there; [`WorldError::Instrument`] where the settings make no sense.
+    /// [`WorldError::MissingInstrument`] for one that is not there; the others as in [`World::add_instrument`].
     pub fn replace_instrument(
         &mut self,
         id: InstrumentId,
@@ -49,6 +51,7 @@ impl<T: Scalar> World<T> {
     ) -> Result<(), WorldError> {
         self.check_instrument(id)?;
         instrument.check()?;
+        self.check_tool(&instrument)?;
         self.let_go(id);
         let (hand, pose) = (self.tools[id.0].hand, self.tools[id.0].pose);
         let pose =
@@ -120,6 +123,16 @@ impl<T: Scalar> World<T> {
     pub fn is_at_work(&self, id: InstrumentId) -> bool {
         let tool = &self.tools[id.0];
         tool.hand.map_or_else(|| self.instrument(id).is_active(self.time()), |_| tool.is_closed)
+    }
+
+    /// Between equilibria nodes are held or free: nothing pushes them, and nothing slips.
+    fn check_tool(&self, instrument: &dyn Instrument<T>) -> Result<(), WorldError> {
+        if !matches!(self.config.integrator, Integrator::QuasiStatic(_)) {
+            return Ok(());
+        }
+        let mut parts = Vec::new();
+        instrument.add_parts(&scripted_pose(instrument, self.time()), 0.0, &mut parts);
+        if parts.is_empty() && instrument.grip() == f64::INFINITY { Ok(()) } else { Err(WorldError::ToolsNeedMotion) }
     }
 
     fn check_instrument(&self, id: InstrumentId) -> Result<(), WorldError> {
@@ -196,10 +209,10 @@ impl<T: Scalar> World<T> {
         let to_own = tool.pose.turn().transpose();
         tool.held_nodes = 0;
         for body in &mut self.bodies {
-            let state = &mut body.state;
-            for node in 0..state.positions.len() {
-                let place = state.positions[node].cast::<f64>();
-                if state.motions[node] == NodeMotion::Free && instrument.takes_hold_of(&tool.pose, place) {
+            for node in 0..body.state.positions.len() {
+                let place = body.state.positions[node].cast::<f64>();
+                if body.can_be_held(node) && instrument.takes_hold_of(&tool.pose, place) {
+                    let state = &mut body.state;
                     state.motions[node] = NodeMotion::Held(number as u32);
                     state.grips[node] = (to_own * (place - tool.pose.tip)).cast();
                     tool.held_nodes += 1;

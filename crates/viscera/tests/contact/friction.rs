@@ -43,20 +43,12 @@ fn a_block_on_a_slope_below_the_cone_stays() {
 #[test]
 fn a_block_on_a_slope_above_the_cone_slides_as_coulomb_says() {
     let (slope, friction) = (0.5f64, 0.2);
-    let (_, speed, world) = slide(EXPLICIT, slope, friction, 0.0);
     let (sin, cos) = slope.atan().sin_cos();
-    let expected = 9.81 * (sin - friction * cos) * world.time();
-    assert!((speed / expected - 1.0).abs() < 0.03, "{speed} m/s instead of {expected}");
-}
-
-/// Contacts that are found anew while the block slides hold it until they slip themselves: it slides, and never faster than friction lets it.
-#[test]
-fn in_implicit_steps_a_block_above_the_cone_slides_no_faster_than_coulomb_says() {
-    let (slope, friction) = (0.5f64, 0.2);
-    let (_, speed, world) = slide(implicit(), slope, friction, 0.0);
-    let (sin, cos) = slope.atan().sin_cos();
-    let fastest = 9.81 * (sin - friction * cos) * world.time();
-    assert!(0.5 * fastest < speed && speed < 1.05 * fastest, "{speed} m/s beside {fastest}");
+    for (integrator, tolerance) in [(EXPLICIT, 0.03), (implicit(), 0.05)] {
+        let (_, speed, world) = slide(integrator, slope, friction, 0.0);
+        let expected = 9.81 * (sin - friction * cos) * world.time();
+        assert!((speed / expected - 1.0).abs() < tolerance, "{integrator:?}: {speed} m/s instead of {expected}");
+    }
 }
 
 /// Without friction nothing is felt across the normals: the rods' forces have no part along them.

@@ -191,7 +191,8 @@ fn every_scheme_brings_every_model_back_to_rest() {
     let schemes = [Scheme::BackwardEuler, damped_newmark, Scheme::Bdf2, Scheme::EnergyMomentum];
     let mut moved = 0;
     for kind in LawKind::ALL {
-        for model in ModelKind::ALL.iter().filter(|model| model.info().laws.contains(kind)) {
+        let able = ModelKind::ALL.iter().filter(|model| model.moves() && model.info().laws.contains(kind));
+        for model in able {
             let claims = model.claims(*kind, false);
             for scheme in schemes {
                 let body = boxed_bar(model.recipe(kind.visit(Example))).damping(3.0).fix(root());

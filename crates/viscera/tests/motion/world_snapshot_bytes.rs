@@ -77,7 +77,7 @@ impl LawVisitor for Example {
 }
 
 fn every_model_goes_on_with_the_same_bits<T: Precision>(_: ()) {
-    for kind in ModelKind::ALL {
+    for kind in ModelKind::ALL.iter().filter(|kind| kind.info().no_cutting.is_none()) {
         let info = kind.info();
         for law in info.laws.first().into_iter().chain(info.laws.last()) {
             let explicit = Integrator::Explicit(Substep::Automatic);
@@ -170,7 +170,7 @@ fn bytes_with_a_checksum_that_fits_are_not_believed_either() {
     let content = &bytes[..bytes.len() - 4];
     let mut newer = content.to_vec();
     newer[8] = 9;
-    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 2 });
+    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 3 });
     for length in 11..content.len() {
         refusal(world.read_snapshot(&signed(content[..length].to_vec())));
     }

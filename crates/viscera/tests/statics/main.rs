@@ -7,3 +7,4 @@ mod locking;
 mod reference;
 mod references;
 mod responses;
+mod steps;

@@ -83,7 +83,7 @@ class TissueVectorEnv(gymnasium.vector.VectorEnv):
 
     def reset(self, *, seed: int | list[int | None] | None = None, options: dict | None = None):
         if seed is not None or not self._generators:
-            first = seed if seed is not None else int(np.random.SeedSequence().entropy % 2**31)
+            first = seed if seed is not None else int(np.random.default_rng().integers(2**31))
             seeds = first if isinstance(first, list) else [first + number for number in range(self.num_envs)]
             self._generators = [gymnasium.utils.seeding.np_random(each)[0] for each in seeds]
         for episode, rng in zip(self.episodes, self._generators):

@@ -61,7 +61,7 @@ class Episode:
 
     def __init__(self, settings: Settings):
         self.settings = settings
-        self._start = None
+        self._start: viscera.Snapshot | None = None
 
     # What a task says.
 
@@ -107,7 +107,7 @@ class Episode:
         self.positions = self.body.positions
         self.steps, self.damage, self.trigger = 0, 0.0, 0.0
         self.tip = np.asarray(self.place(rng), dtype=float)
-        self.force = np.zeros(3)
+        self.force: np.ndarray = np.zeros(3)
         # The tool comes from above, where it touches nothing, and the tissue rests meanwhile.
         self.instrument.lead(self.tip.tolist(), direction=self.direction)
         self.world.step()
@@ -167,8 +167,7 @@ class Episode:
     def _depth(self) -> np.ndarray:
         eye = np.array([0.6, 1.6, 1.8]) * self.extent
         triangles, _ = self.body.surface()
-        size = tuple(self.settings.image)
-        picture = viscera.depth_image(self.positions, triangles, eye=eye.tolist(), target=[0.0, 0.0, 0.0], size=size)
+        picture = viscera.depth_image(self.positions, triangles, eye=eye.tolist(), target=[0.0, 0.0, 0.0], size=self.settings.image)
         return np.minimum(picture / self.extent, 5.0).astype(np.float32)
 
 

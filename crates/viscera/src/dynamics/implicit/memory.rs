@@ -1,7 +1,7 @@
 use super::{Implicit, MatrixForm, Preconditioning};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid};
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid, Reach};
 
 /// What an implicit step computes in; it means nothing between steps.
 #[derive(Clone, Debug)]
@@ -46,8 +46,8 @@ pub struct ImplicitMemory<T> {
 }
 
 impl<T: Scalar> ImplicitMemory<T> {
-    /// Memory for a body of `mesh`, of models that reach over this many `rings` of cells.
-    pub fn new(mesh: &VolumeMesh, rings: usize, settings: &Implicit) -> Self {
+    /// Memory for a body of `mesh`, of models whose forces reach so far.
+    pub fn new(mesh: &VolumeMesh, reach: Reach<'_>, settings: &Implicit) -> Self {
         let nodes = mesh.nodes().len();
         let zeros = || vec![Vec3::ZERO; nodes];
         Self {
@@ -65,8 +65,8 @@ impl<T: Scalar> ImplicitMemory<T> {
             masses: vec![T::ZERO; nodes],
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
-            multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, rings)),
-            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, rings)),
+            multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),
+            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, reach)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
             reactions: zeros(),
             is_linear: false,

@@ -39,7 +39,7 @@ impl<T: Scalar> Step<'_, T> {
         };
         let found = body.contacts.find(self.drive.rods, &body.skin, self.drive.frames, place);
         if found {
-            body.contacts.find_before(&body.state.tractions, self.drive.rods);
+            body.contacts.find_before(&body.state.tractions, self.drive.rods, increment);
         }
         let decided = !body.contacts.is_empty() && body.contacts.decide(increment);
         found || decided

@@ -33,6 +33,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         body: &'a mut SimulatedBody<T>,
         gravity: Vec3<T>,
         time: f64,
+        target: impl Fn(&SimulatedBody<T>, usize) -> Option<Vec3<T>>,
         solver: &'a mut dyn LinearSolver,
     ) -> Result<Self, StaticError> {
         body.update_internal_forces(Stages::unobserved());
@@ -40,14 +41,10 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         if !state.motions.iter().any(|motion| !matches!(motion, NodeMotion::Free | NodeMotion::Retired)) {
             return Err(StaticError::NothingHolds { body: body.name.clone() });
         }
-        let target = |(node, motion): (usize, &NodeMotion)| match *motion {
-            NodeMotion::Prescribed(curve) => body.rest[node] + body.prescribed[curve as usize].at(time).cast(),
-            NodeMotion::Guided(guide) => body.rest[node] + body.guides.displacement(guide, time).cast(),
-            _ => state.positions[node],
-        };
-        let targets = state.motions.iter().enumerate().map(target).collect();
+        let places = state.positions.iter().enumerate();
+        let targets = places.map(|(node, &place)| target(body, node).unwrap_or(place)).collect();
         let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
-        let system = System { matrix: BlockMatrix::new(&body.mesh, state.rings()), filters };
+        let system = System { matrix: BlockMatrix::new(&body.mesh, state.reach()), filters };
         solver.analyse(&system);
         let (start, start_forces) = (state.positions.clone(), state.internal_forces.clone());
         Ok(Self { body, solver, gravity, time, system, shifted: false, start, start_forces, targets })
@@ -89,6 +86,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
         if self.shifted {
             return Err(StaticFailure::Unstable);
         }
+        self.body.place_followers(self.time, self.gravity);
         match self.flattest() {
             (cell, ratio) if ratio <= 0.0 => Err(StaticFailure::Inverted { cell }),
             _ => Ok(residuals),
@@ -249,6 +247,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     /// Stops the nodes and brings the forces up to date, so that reactions can be read.
     pub(super) fn come_to_rest(&mut self) {
         self.body.state.velocities.fill(Vec3::ZERO);
+        self.body.place_followers(self.time, self.gravity);
         self.body.update_internal_forces(Stages::unobserved());
         self.body.update_external_forces(self.time, self.gravity);
     }

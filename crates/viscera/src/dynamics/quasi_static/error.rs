@@ -1,3 +1,4 @@
+use crate::model::ModelKind;
 use crate::solver::SolverError;
 
 /// Why no equilibrium was found.
@@ -18,6 +19,26 @@ pub enum StaticError {
     NothingHolds {
         /// Name of the body.
         body: String,
+    },
+    /// The model knows nothing that Newton's method could use.
+    #[error("body `{body}`: equilibria are not for the model `{model}`: {advice}")]
+    ModelHasNoEquilibrium {
+        /// Name of the body.
+        body: String,
+        /// The model.
+        model: ModelKind,
+        /// Why, and what to do.
+        advice: &'static str,
+    },
+    /// Newton's method knows nothing of what constraints and muscles do.
+    #[error(
+        "body `{body}` has {feature}, which equilibria do not know; let it come to rest in explicit steps, with damping"
+    )]
+    FeatureHasNoEquilibrium {
+        /// Name of the body.
+        body: String,
+        /// What it has.
+        feature: &'static str,
     },
     /// The load is beyond what the body can bear. It is left in the last equilibrium that was found.
     #[error(

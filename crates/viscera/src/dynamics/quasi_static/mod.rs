@@ -86,8 +86,29 @@ impl QuasiStatic {
         time: f64,
         solver: &mut dyn LinearSolver,
     ) -> Result<StaticReport, StaticError> {
-        self.check()?;
-        let mut equilibrium = Equilibrium::new(body, Vec3::from(gravity).cast(), time, solver)?;
+        let gravity = Vec3::from(gravity).cast();
+        self.solve_driven(body, gravity, time, |body, node| body.driven_to(node, time), solver)
+    }
+
+    /// The same with the places of held nodes from `target`.
+    pub(crate) fn solve_driven<T: Scalar>(
+        &self,
+        body: &mut SimulatedBody<T>,
+        gravity: Vec3<T>,
+        time: f64,
+        target: impl Fn(&SimulatedBody<T>, usize) -> Option<Vec3<T>>,
+        solver: &mut dyn LinearSolver,
+    ) -> Result<StaticReport, StaticError> {
+        if let Some((name, value, range)) = self.first_out_of_range() {
+            return Err(StaticError::OutOfRange { name, value, range });
+        }
+        if let Some(advice) = body.model.info().no_implicit {
+            return Err(StaticError::ModelHasNoEquilibrium { body: body.name.clone(), model: body.model, advice });
+        }
+        if let Some(feature) = body.explicit_feature() {
+            return Err(StaticError::FeatureHasNoEquilibrium { body: body.name.clone(), feature });
+        }
+        let mut equilibrium = Equilibrium::new(body, gravity, time, target, solver)?;
         let report = if self.small_strain { equilibrium.solve_once() } else { self.raise_load(&mut equilibrium) };
         equilibrium.come_to_rest();
         report
@@ -116,14 +137,15 @@ impl QuasiStatic {
         Ok(report)
     }
 
-    fn check(&self) -> Result<(), StaticError> {
-        let positive = |name, value: f64| {
-            let good = value.is_finite() && value > 0.0;
-            if good { Ok(()) } else { Err(StaticError::OutOfRange { name, value, range: "positive" }) }
-        };
-        positive("tolerance", self.tolerance)?;
-        positive("iterations", self.iterations as f64)?;
-        positive("first_step", self.first_step)?;
-        positive("smallest_step", self.smallest_step)
+    /// The first setting that is out of range: its name, its value, and what would do.
+    pub(crate) fn first_out_of_range(&self) -> Option<(&'static str, f64, &'static str)> {
+        let settings = [
+            ("tolerance", self.tolerance),
+            ("iterations", self.iterations as f64),
+            ("first_step", self.first_step),
+            ("smallest_step", self.smallest_step),
+        ];
+        let (name, value) = settings.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0))?;
+        Some((name, value, "positive"))
     }
 }

@@ -26,7 +26,7 @@ pub fn respond<T: Scalar>(
     body.update_internal_forces(Stages::unobserved());
     let state = &body.state;
     let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
-    let mut system = System { matrix: BlockMatrix::new(&body.mesh, state.rings()), filters };
+    let mut system = System { matrix: BlockMatrix::new(&body.mesh, state.reach()), filters };
     body.is_linearized = false;
     let (state, mut sink) = (&body.state, Widen(&mut system.matrix));
     for model in &state.models {

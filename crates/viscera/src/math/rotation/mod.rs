@@ -13,9 +13,10 @@ pub use svd::{Svd, svd};
 
 use super::{Mat3, Real, Vec3};
 
-/// F over its largest entry, so that no square of an entry overflows; entries below 1e-30 count as nothing.
+/// F over its largest entry, and that entry, so that no power of an entry leaves the range of the precision; stretches below 1e-30
+/// count as nothing.
 #[inline(always)]
-fn scaled<R: Real>(f: &Mat3<R>) -> (Mat3<R>, R) {
+pub(crate) fn scaled<R: Real>(f: &Mat3<R>) -> (Mat3<R>, R) {
     let largest = |v: Vec3<R>| v.x.abs().max(v.y.abs()).max(v.z.abs());
     let [a, b, c] = f.columns;
     let scale = largest(a).max(largest(b)).max(largest(c)).max(a.x.like(1e-30));

@@ -6,6 +6,7 @@ mod cylinder;
 mod error;
 mod extrusion;
 mod liver;
+mod trunk;
 mod tube;
 
 pub use box_grid::CubeCut;

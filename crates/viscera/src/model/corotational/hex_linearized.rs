@@ -10,7 +10,8 @@ use super::hex::{CorotationalHexes, POINTS};
 use super::hooke::Hooke;
 use super::lane_vector::{load, store};
 use crate::math::{Lanes, Mat3, Real, Scalar, Vec3};
-use crate::model::block_sink::{BlockSink, add_block};
+use crate::model::BlockSink;
+use crate::model::block_sink::add_block;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 
 /// Numbers of the turned gradients of a point.

@@ -54,6 +54,8 @@ impl Corotational {
         purpose: "large rotations at the price of small strains; steady in large implicit steps, turns back when inverted",
         hexahedra: true,
         laws: LAWS,
+        no_implicit: None,
+        no_cutting: None,
     };
 
     pub(crate) fn claims(law: LawKind, hexahedra: bool) -> Claims {
@@ -63,6 +65,7 @@ impl Corotational {
             objective: true,
             force_free: true,
             torque_free: has_energy,
+            passes_patch_test: true,
             conservative: has_energy,
             exact_products: false,
             symmetric_products: true,

@@ -33,6 +33,8 @@ impl StiffnessWarping {
         purpose: "for comparison only: rotations at the nodes, whose ghost forces push a bent body about",
         hexahedra: false,
         laws: LAWS,
+        no_implicit: None,
+        no_cutting: None,
     };
 
     pub(crate) fn claims(_law: LawKind, _hexahedra: bool) -> Claims {
@@ -41,6 +43,7 @@ impl StiffnessWarping {
             objective: true,
             force_free: false,
             torque_free: false,
+            passes_patch_test: true,
             conservative: false,
             exact_products: false,
             symmetric_products: false,

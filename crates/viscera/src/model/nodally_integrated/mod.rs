@@ -52,6 +52,8 @@ impl NodallyIntegrated {
             LawKind::NeoHookean,
             LawKind::StableNeoHookean,
         ],
+        no_implicit: None,
+        no_cutting: None,
     };
 
     pub(crate) fn claims(law: LawKind, _hexahedra: bool) -> Claims {

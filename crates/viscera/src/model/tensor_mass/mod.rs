@@ -50,6 +50,8 @@ impl TensorMass {
         purpose: "large displacements from tables on vertices, edges, triangles and tetrahedra; can be adaptive",
         hexahedra: false,
         laws: LAWS,
+        no_implicit: None,
+        no_cutting: None,
     };
 
     /// A model of `tissue`.

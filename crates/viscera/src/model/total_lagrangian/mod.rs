@@ -32,6 +32,8 @@ impl TotalLagrangian {
         purpose: "the fastest full model, for every law, on tetrahedra and hexahedra",
         hexahedra: true,
         laws: LawKind::ALL,
+        no_implicit: None,
+        no_cutting: None,
     };
 
     /// A model of `tissue`.

@@ -3,7 +3,7 @@
 use super::lattice::{Interpolation, Share};
 use super::level_matrix::{LevelMatrix, Pattern};
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::model::BlockSink;
+use crate::solver::BlockSink;
 use crate::solver::Filter;
 
 /// The blocks of the stiffness on and above the diagonal, and the way from them to the matrix of the first lattice.

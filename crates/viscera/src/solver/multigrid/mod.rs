@@ -29,7 +29,7 @@ use super::{BlockJacobi, Filter, LinearOperator, Preconditioner, Size, dot};
 use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::model::BlockSink;
+use crate::solver::{BlockSink, Reach};
 
 /// A lattice of at most so many nodes is solved directly.
 const DIRECT: usize = 100;
@@ -49,10 +49,10 @@ pub struct Multigrid<T> {
 }
 
 impl<T: Scalar> Multigrid<T> {
-    /// Memory for a body of `mesh`, of models that reach over this many `rings` of cells. Nothing is allocated later.
-    pub fn new(mesh: &VolumeMesh, rings: usize) -> Self {
+    /// Memory for a body of `mesh`, of models whose forces reach so far. Nothing is allocated later.
+    pub fn new<'a>(mesh: &VolumeMesh, reach: impl Into<Reach<'a>>) -> Self {
         let (mut lattice, interpolation) = Lattice::over(mesh);
-        let (blocks, mut matrix) = FineBlocks::new(&pattern(mesh, rings), &interpolation, lattice.len());
+        let (blocks, mut matrix) = FineBlocks::new(&pattern(mesh, reach.into()), &interpolation, lattice.len());
         let mut levels = Vec::new();
         while lattice.len() > DIRECT {
             let (coarse, parents) = lattice.coarser();

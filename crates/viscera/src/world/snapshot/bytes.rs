@@ -20,7 +20,7 @@ use crate::world::World;
 
 const MARK: &[u8; 8] = b"viscera\0";
 /// Grows with every change of what is written.
-const FORMAT: u16 = 2;
+const FORMAT: u16 = 3;
 const HEAD: usize = MARK.len() + 3;
 const CHECKSUM: usize = 4;
 
@@ -111,6 +111,7 @@ fn fits<T: Precision>(state: &BodyState<T>, body: &SimulatedBody<T>, instruments
         NodeMotion::Prescribed(curve) => (curve as usize) < body.prescribed.len(),
         NodeMotion::Guided(guide) => body.guides.has(guide),
         NodeMotion::Held(instrument) => (instrument as usize) < instruments,
+        NodeMotion::Following => body.followers.is_some(),
     };
     let mut removed = vec![false; cells];
     let once = |&cell: &u32| removed.get_mut(cell as usize).is_some_and(|gone| !std::mem::replace(gone, true));
@@ -121,6 +122,7 @@ fn fits<T: Precision>(state: &BodyState<T>, body: &SimulatedBody<T>, instruments
         && state.removals.cells().iter().all(once)
         && state.removed == removed
         && state.removed_count == state.removals.cells().len()
+        && state.volumes.len() == body.state.volumes.len()
         && state.heat.len() == cells
         && state.seared.len() == nodes
 }

@@ -60,6 +60,7 @@ impl<T: Scalar> World<T> {
             body.state = of_body.state.clone();
             body.is_linearized = false;
             body.frequency = of_body.frequency.clone_box();
+            body.constraints.update(&body.state.removed);
             body.update_skin();
         }
         self.tools.iter_mut().zip(&snapshot.tools).for_each(|(tool, &(_, kept))| *tool = kept);

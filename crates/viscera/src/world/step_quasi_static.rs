@@ -1,0 +1,64 @@
+use super::step::Motion;
+use super::{StepError, World};
+use crate::body::{NodeMotion, SimulatedBody};
+use crate::contact::ToolFrame;
+use crate::dynamics::Drive;
+use crate::dynamics::implicit::ImplicitReport;
+use crate::dynamics::quasi_static::{QuasiStatic, StaticReport};
+use crate::instrument::Span;
+use crate::math::{Scalar, Vec3};
+use crate::solver::Iterative;
+use crate::stage::{Stage, Stages};
+
+impl<T: Scalar> World<T> {
+    /// Brings the bodies into the equilibrium of the end of the step, from that of its beginning; at small strain, from rest. Memory is
+    /// asked for on the way, other than in steps of motion.
+    pub(super) fn move_statically(
+        &mut self,
+        span: &Span,
+        settings: &QuasiStatic,
+        stages: Stages,
+    ) -> Result<Motion, StepError> {
+        stages.run(Stage::Instruments, || {
+            self.lead_tools(span);
+            self.move_tools(span, 0.0, 1.0);
+        });
+        let gravity = Vec3::from(self.config.gravity).cast();
+        let drive = Drive { end: span.to, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
+        let mut solver = Iterative::default();
+        let mut report = ImplicitReport::NOTHING;
+        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+            if settings.small_strain {
+                body.state.positions.clone_from(&body.rest);
+                body.state.positions_changed();
+            }
+            let found = stages.run(Stage::Newton, || {
+                let target = |body: &_, node: usize| drive.target(body, node, body.state.positions[node]);
+                settings.solve_driven(body, gravity, span.to, target, &mut solver)
+            });
+            account_for_holding(body, &self.motion.frames, span.to - span.from);
+            match found {
+                Ok(own) => report = report.worst(summary(&own)),
+                Err(error) => return Err(StepError::NoEquilibrium { time: span.from, error }),
+            }
+        }
+        Ok(Motion { substeps: 1, retries: 0, implicit: Some(report) })
+    }
+}
+
+/// Writes down what carries the held nodes: what the internal forces have more than the external ones.
+fn account_for_holding<T: Scalar>(body: &mut SimulatedBody<T>, frames: &[ToolFrame], duration: f64) {
+    for node in 0..body.state.motions.len() {
+        let NodeMotion::Held(tool) = body.state.motions[node] else { continue };
+        let impulse = (body.state.internal_forces[node] - body.external_forces[node]).cast::<f64>() * duration;
+        let lever = body.state.positions[node].cast::<f64>() - frames[tool as usize].tip.1;
+        let load = &mut body.contacts.loads[tool as usize];
+        load.holding += impulse;
+        load.holding_moment += lever.cross(impulse);
+    }
+}
+
+fn summary(report: &StaticReport) -> ImplicitReport {
+    let residual = report.steps.last().and_then(|step| step.residuals.last().copied()).unwrap_or(0.0);
+    ImplicitReport { newton_iterations: report.iterations() as u32, residual, ..ImplicitReport::NOTHING }
+}

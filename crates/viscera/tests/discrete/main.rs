@@ -1,0 +1,9 @@
+//! Discrete bodies: nets of springs, nodes that remember their shape, volumes that are kept exactly, rigid parts, muscles.
+
+mod exact_volume;
+mod mass_spring;
+mod muscle;
+mod rigid_part;
+mod shape_memory;
+mod support;
+mod trunk;
