@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the engine as WebAssembly into web/src/engine/generated, for a page that needs no server.
-# Takes rustup's target where it can be had, or else the library's sources; says what is missing otherwise.
+# Takes the compiler's own target where it can be had, or else the library's sources. Ends with 3, and says what is missing, where there is
+# neither.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,7 +11,7 @@ version="$(sed -n '/^name = "wasm-bindgen"$/{n;s/^version = "\(.*\)"$/\1/p}' Car
 
 missing() {
     printf 'the engine cannot be built for the web: %s\n' "$1" >&2
-    exit 1
+    exit 3
 }
 
 has_target() {
@@ -27,21 +28,23 @@ elif [ -n "${WEB_RUST_SRC:-}" ]; then
     RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" RUSTFLAGS="$flags" cargo build --locked --profile web \
         --target wasm32-unknown-unknown -Zbuild-std=std,panic_abort -p viscera-web
 else
-    missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`. Where rustup cannot fetch it, \
-name the folder \`library\` of the sources of $(rustc --version) by WEB_RUST_SRC (Debian: package rust-src; RUSTUP_TOOLCHAIN chooses another compiler)"
+    missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`, or Debian's packages \
+libstd-rust-dev-wasm32 and lld for Debian's compiler. Where neither can be had, name the folder \`library\` of the sources of \
+$(rustc --version) by WEB_RUST_SRC (Debian: package rust-src; RUSTUP_TOOLCHAIN chooses another compiler)"
 fi
 
-# The tool has to be of the library's version to the last digit.
+# The tool has to be of the library's version to the last digit. Not optimised: it runs for seconds and would be compiled for minutes.
 bindgen="$target_dir/tools/wasm-bindgen-$version"
 if [ ! -x "$bindgen/bin/wasm-bindgen" ]; then
-    RUSTFLAGS="" CARGO_TARGET_DIR="$target_dir/tools" cargo install wasm-bindgen-cli --version "=$version" --root "$bindgen"
+    RUSTFLAGS="" CARGO_TARGET_DIR="$target_dir/tools" cargo install wasm-bindgen-cli --debug --bin wasm-bindgen --version "=$version" --root "$bindgen"
 fi
 rm -rf "$out"
-"$bindgen/bin/wasm-bindgen" --target web --out-dir "$out" "$target_dir/wasm32-unknown-unknown/web/viscera_web.wasm"
+"$bindgen/bin/wasm-bindgen" --remove-name-section --target web --out-dir "$out" "$target_dir/wasm32-unknown-unknown/web/viscera_web.wasm"
 
-# A fifth smaller, where binaryen is there (npm, a development dependency of the page).
-if [ -x web/node_modules/.bin/wasm-opt ]; then
-    web/node_modules/.bin/wasm-opt -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int --enable-sign-ext \
+# Smaller, where binaryen is there: `npm install --no-save binaryen`, or the system's package. A hundred megabytes, so that it is no dependency.
+wasm_opt="$(command -v web/node_modules/.bin/wasm-opt || command -v wasm-opt || true)"
+if [ -n "$wasm_opt" ]; then
+    "$wasm_opt" -O3 --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int --enable-sign-ext \
         --enable-mutable-globals --enable-reference-types --enable-multivalue \
         "$out/viscera_web_bg.wasm" -o "$out/viscera_web_bg.wasm.small"
     mv "$out/viscera_web_bg.wasm.small" "$out/viscera_web_bg.wasm"

@@ -1,7 +1,7 @@
 import { defineConfig } from 'vitest/config';
 
 // The session is another program's; it answers only to pages that it served itself, so the proxy speaks as one of them.
-const program = `ws://127.0.0.1:${process.env['VISCERA_PORT'] ?? '8472'}`;
+const program = `http://127.0.0.1:${process.env['VISCERA_PORT'] ?? '8472'}`;
 const proxy = { '/ws': { target: program, ws: true, changeOrigin: true, rewriteWsOrigin: true } };
 
 // Relative addresses: the built page is served by the program at `/`, and by any static host below any path.

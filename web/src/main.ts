@@ -42,7 +42,12 @@ async function main(): Promise<void> {
     view.stage.setChosen(tools.chosen?.instrument);
     view.invalidate();
     strip.show();
-    if (session.scene) hint.show(tools.chosen ? mannerOf(tools.chosen) : 'none');
+    const others = tools.list.filter((tool) => tool !== tools.chosen);
+    if (session.scene)
+      hint.show(
+        tools.chosen && mannerOf(tools.chosen),
+        others.map((tool) => [mannerOf(tool), tool.name] as const),
+      );
   });
   const pointer = new PointerHandling(view, tools, () => hint.dismiss());
   const strip = new ToolStrip(session, tools, (part) => pointer.deepen(part));

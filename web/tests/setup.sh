@@ -12,21 +12,33 @@ missing() {
 
 may_install() { command -v apt-get >/dev/null && { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null; }; }
 
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
+update_packages() { as_root apt-get update -qq; }
+
 install_packages() {
-    local as_root=()
-    [ "$(id -u)" = 0 ] || as_root=(sudo)
-    "${as_root[@]}" apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "$@"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"
 }
 
-# Debian's own Node is older than Vite bears in some releases, so that it is checked and not installed.
-version=$(node --version 2>/dev/null || echo v0)
-if [ "$(printf '%s\n' "$least_node" "${version#v}" | sort -V | head -1)" != "$least_node" ]; then
-    missing "The page needs Node.js $least_node or newer with npm; found ${version#v}." \
-        "Install it from https://nodejs.org or with your system's packages."
+too_old() { [ "$(printf '%s\n' "$least_node" "${1:-0}" | sort -V | head -1)" != "$least_node" ]; }
+
+# The version that the system's packages would bring, without epoch and revision.
+offered_node() { apt-cache policy nodejs | sed -n 's/^ *Candidate: \([0-9]*:\)\{0,1\}\([0-9.]*\).*/\2/p'; }
+
+node_version() { { node --version 2>/dev/null || echo v0; } | tr -d v; }
+
+# Debian brings a Node that Vite bears since its release 13.
+if too_old "$(node_version)" || ! command -v npm >/dev/null; then
+    if may_install && update_packages && ! too_old "$(offered_node)"; then
+        install_packages nodejs npm
+    else
+        missing "The page needs Node.js $least_node or newer with npm; found $(node_version)." \
+            "Install it from https://nodejs.org or with your system's packages."
+    fi
 fi
 
-chromium() {
+# Not called after the program: `command -v` finds functions too.
+has_chromium() {
     local name
     for name in "${CHROMIUM:-}" chromium chromium-browser; do
         [ -n "$name" ] && command -v "$name" >/dev/null && return 0
@@ -34,8 +46,9 @@ chromium() {
     return 1
 }
 
-if ! chromium; then
+if ! has_chromium; then
     if may_install; then
+        update_packages
         install_packages chromium fonts-dejavu-core
     else
         missing "The page's tests need Chromium." \

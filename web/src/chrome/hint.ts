@@ -5,12 +5,12 @@ import { remember, remembered } from './theme';
 
 const KEY = 'viscera.hint';
 
-const WORK: Record<Manner | 'none', readonly [icon: IconName, text: string]> = {
+const WORK: Record<Manner, readonly [icon: IconName, text: string]> = {
   grasp: ['grasp', 'Press on the tissue to grasp it, and drag to pull.'],
   burn: ['burn', 'Press on the tissue to burn it, and drag along the cut.'],
-  none: ['add', 'Bring in a tool at the left, or press on the tissue to get one.'],
   push: ['push', 'Press on the tissue to push it in, and drag to slide.'],
 };
+const NO_TOOL = ['add', 'Bring in a tool at the left, or press on the tissue to get one.'] as const;
 
 /** How to begin, for those who see the page for the first time. Gone for good once it was read or done. */
 export class Hint {
@@ -19,12 +19,18 @@ export class Hint {
     hidden: true,
     attributes: { 'aria-label': 'How to begin' },
   });
-  private shown: Manner | 'none' | undefined;
+  private shown = '';
 
-  /** `manner`: what the tool in hand does; `none` while there is none. */
-  show(manner: Manner | 'none', touch = matchMedia('(pointer: coarse)').matches): void {
-    if (manner === this.shown || remembered(KEY) !== null) return;
-    this.shown = manner;
+  /** `inHand`: what the tool in hand does; `others`: what the other tools of the scene do, and what they are called. */
+  show(
+    inHand: Manner | undefined,
+    others: readonly (readonly [Manner, name: string])[],
+    touch = matchMedia('(pointer: coarse)').matches,
+  ): void {
+    const wanted = JSON.stringify([inHand, others]);
+    if (wanted === this.shown || remembered(KEY) !== null) return;
+    this.shown = wanted;
+    const cutter = inHand === 'burn' ? undefined : others.find(([manner]) => manner === 'burn');
     const line = (name: IconName, text: string) => element('li', {}, icon(name), element('span', {}, text));
     const close = element('button', { type: 'button', className: 'text-button' }, 'Understood');
     close.addEventListener('click', () => this.dismiss());
@@ -32,7 +38,8 @@ export class Hint {
       element(
         'ul',
         {},
-        line(...WORK[manner]),
+        line(...(inHand ? WORK[inHand] : NO_TOOL)),
+        cutter ? line('burn', `To cut, choose the ${cutter[1]} at the left, and press likewise.`) : undefined,
         line(
           'depth',
           touch

@@ -101,10 +101,10 @@ export class View {
     look.normalize();
     const radius = home.radius > 0 ? home.radius : 1;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    // So that a ball of that radius fits into what is left free.
-    const free = Math.min(width - 2 * COVERED_LEFT, height - COVERED_BELOW) / Math.max(1, height);
-    const distance =
-      (0.85 * radius) / (Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2) * Math.max(0.3, free));
+    // So that a ball of that radius fits into what is left free; organs are flatter than balls, so that it may reach a little over.
+    const free = (part: number) => Math.max(0.3, part / Math.max(1, height));
+    const fit = Math.max(0.85 / free(height - COVERED_BELOW), 1 / free(width - 2 * COVERED_LEFT));
+    const distance = (fit * radius) / Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2);
     this.camera.up.set(...home.camera.up);
     this.camera.position.copy(centre).addScaledVector(look, -distance);
     this.camera.near = 0.02 * radius;

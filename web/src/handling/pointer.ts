@@ -68,7 +68,7 @@ export class PointerHandling {
       if (tip) this.begin(event, hit.point, tip, false);
       return;
     }
-    this.tools.begin(hit.point, this.heading(hit.point, hit.normal));
+    this.tools.begin(hit.point, hit.normal, this.heading(hit.point, hit.normal));
     const goal = this.tools.lead();
     if (goal) this.begin(event, hit.point, goal, true);
   }

@@ -85,14 +85,17 @@ export class Tools {
     this.session.send({ type: 'remove-instrument', instrument });
   }
 
-  /** Begins work at a point of the surface. `heading`: from where a free tool comes. With no tool at all, one is brought in. */
-  begin(point: Vector3, heading: Vector3): void {
+  /**
+   * Begins work at a point of the surface with the outward `normal`. `heading`: from where a free tool comes. With no tool at all, one
+   * is brought in.
+   */
+  begin(point: Vector3, normal: Vector3, heading: Vector3): void {
     const instrument = this.chosen;
     if (!instrument && this.mayDrive) this.bringInAt(point, heading);
     const hand = this.inHand();
     if (!instrument || !hand) return;
     const direction = instrument.trocar ? point.clone().sub(new Vector3(...instrument.trocar)) : heading;
-    hand.approach(this.depthOf(instrument, point, direction), direction, this.clearance, 1);
+    hand.approach(this.depthOf(instrument, point, normal, direction), direction, this.clearance, 1);
   }
 
   /** Brings in the first kind of tool that has a trigger, a little off the tissue. */
@@ -162,7 +165,7 @@ export class Tools {
   }
 
   /** How deep work goes: jaws enclose what they take, a hook sinks in, a probe presses. */
-  private depthOf(instrument: SceneInstrument, point: Vector3, direction: Vector3): Vector3 {
+  private depthOf(instrument: SceneInstrument, point: Vector3, normal: Vector3, direction: Vector3): Vector3 {
     const radius = this.session.scene?.radius ?? 1;
     const manner = mannerOf(instrument);
     const depth =
@@ -171,7 +174,9 @@ export class Tools {
         : manner === 'burn'
           ? instrument.shaft.radius
           : 0.14 * radius;
-    return point.clone().addScaledVector(direction.clone().normalize(), depth);
+    const tip = point.clone().addScaledVector(direction.clone().normalize(), depth);
+    // A trocar may lead jaws along the surface: they would slide over it and close on nothing.
+    return manner === 'grasp' ? tip.addScaledVector(normal, -depth) : tip;
   }
 
   /** Takes the hand off a tool that was put elsewhere: by a replay, a kept state, another scene. */

@@ -60,6 +60,16 @@ const holds = (page: Page) =>
     Number(frame?.instruments.find(({ instrument }) => instrument === chosen)?.holds ?? false),
   );
 
+/** What the tool in hand feels [N]. */
+const force = (page: Page) =>
+  number(page, ({ frame, chosen }) => {
+    const tool = frame?.instruments.find(({ instrument }) => instrument === chosen);
+    return Math.hypot(...(tool?.force ?? [0, 0, 0]));
+  });
+
+/** Cells of the first body that are gone, where they were counted just now. */
+const removed = (page: Page) => number(page, ({ frame }) => frame?.observables?.[0]?.removed ?? 0);
+
 async function openBlock(page: Page): Promise<void> {
   const before = await number(page, ({ scene }) => scene?.epoch ?? -1);
   await openText(page, 'block.toml', BLOCK);
@@ -123,6 +133,45 @@ for (const engine of ['native', 'wasm'] as const) {
       expect(red).toBeGreaterThan(0.05);
     });
 
+    test('whoever comes for the first time grasps and cuts at once', async () => {
+      // The tools that the scene has beside the organ, and a place on its left lobe that the eye sees.
+      await expect(page.getByRole('radio', { checked: true })).toHaveText('Grasper');
+      const spot = await page.evaluate(() => {
+        const { project, under, scene } = window.viscera.state();
+        const [x, y, z] = scene!.centre;
+        const places = [0.08, 0.06, 0.04, 0.02, 0].map((across) => project([x + across, y, z + 0.04]));
+        return places.find(({ x: left, y: top }) => under(left, top) === 'tissue')!;
+      });
+      await page.mouse.move(spot.x, spot.y);
+      await page.mouse.down();
+      await expect.poll(() => holds(page)).toBe(1);
+      await page.mouse.move(spot.x + 30, spot.y - 60, { steps: 6 });
+      await expect.poll(() => force(page)).toBeGreaterThan(0.02);
+      await page.mouse.up();
+      await expect.poll(() => holds(page)).toBe(0);
+      await page.getByRole('radio', { name: 'Cautery' }).click();
+      await page.mouse.move(spot.x, spot.y);
+      await page.mouse.down();
+      await expect.poll(() => removed(page)).toBeGreaterThan(0);
+      await page.mouse.up();
+    });
+
+    test('the recordings that come along replay as they were', async () => {
+      for (const title of ['The left lobe is grasped', 'The edge of the left lobe is cut']) {
+        await page.getByRole('button', { name: 'Replay' }).click();
+        await page.getByRole('menuitem', { name: title }).click();
+        await expect(page.locator('.tape')).toContainText('agrees');
+        await expect(page.locator('.tape')).toBeHidden({ timeout: 120_000 });
+        await expect(page.getByText(/replayed \d+ steps to the same (bits|numbers)/).last()).toBeVisible();
+        await expect(page.locator('.notice.warning, .notice.error')).toHaveCount(0);
+        await page.screenshot({
+          path: `tests/artefacts/${engine}-${title.includes('cut') ? 'edge' : 'lobe'}.png`,
+        });
+        // A replay ends in pause, where it ended.
+        await page.getByRole('button', { name: 'Go on (P)' }).click();
+      }
+    });
+
     test('pictures are counted, and the simulation goes on', async () => {
       await openBlock(page);
       const before = await steps(page);
@@ -141,11 +190,7 @@ for (const engine of ['native', 'wasm'] as const) {
       // Up, against the sag: past the place at rest, and twice as far again.
       await page.mouse.move(grip.x + 20, grip.y - 110, { steps: 8 });
       await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.005);
-      const force = await number(page, ({ frame, chosen }) => {
-        const tool = frame?.instruments.find(({ instrument }) => instrument === chosen);
-        return Math.hypot(...(tool?.force ?? [0, 0, 0]));
-      });
-      expect(force).toBeGreaterThan(0);
+      expect(await force(page)).toBeGreaterThan(0);
       await page.screenshot({ path: `tests/artefacts/${engine}-grasped.png` });
       await page.mouse.up();
       await expect.poll(() => holds(page)).toBe(0);
@@ -202,9 +247,7 @@ for (const engine of ['native', 'wasm'] as const) {
       const spot = await place(page, [0.05, 0.02, 0.04]);
       await page.mouse.move(spot.x, spot.y);
       await page.mouse.down();
-      await expect
-        .poll(() => number(page, ({ frame }) => frame?.observables?.[0]?.removed ?? 0), { timeout: 30_000 })
-        .toBeGreaterThan(0);
+      await expect.poll(() => removed(page), { timeout: 30_000 }).toBeGreaterThan(0);
       await page.mouse.move(spot.x, spot.y - 25, { steps: 5 });
       await page.waitForTimeout(500);
       await page.mouse.up();
@@ -253,6 +296,29 @@ for (const engine of ['native', 'wasm'] as const) {
       await openText(page, 'own.toml', 'title = "x"\n[body.a]\nyoungs = 1\n');
       await expect(page.locator('.notice.error pre').first()).toContainText('own.toml');
       await page.screenshot({ path: `tests/artefacts/${engine}-refused.png` });
+      const before = await steps(page);
+      await expect.poll(() => steps(page)).toBeGreaterThan(before);
+    });
+
+    test('a mesh that is dropped becomes tissue', async () => {
+      // A cube of 40 mm, in millimetres.
+      const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) =>
+        [1, 2, 4].map((bit) => (corner & bit ? 40 : 0)).join(' '),
+      );
+      const sides = ['1 3 4 2', '5 6 8 7', '1 2 6 5', '3 7 8 4', '1 5 7 3', '2 4 8 6'];
+      const text = [...corners.map((corner) => `v ${corner}`), ...sides.map((side) => `f ${side}`)].join(
+        '\n',
+      );
+      const dataTransfer = await page.evaluateHandle((content) => {
+        const carried = new DataTransfer();
+        carried.items.add(new File([content], 'cube.obj'));
+        return carried;
+      }, text);
+      await page.dispatchEvent('#theatre', 'dragenter', { dataTransfer });
+      await expect(page.getByText('Drop a mesh, a scene or a recording')).toBeVisible();
+      await page.dispatchEvent('#theatre', 'drop', { dataTransfer });
+      await expect.poll(async () => (await state(page)).scene?.name).toBe('cube');
+      await expect(page.getByText('Drop a mesh, a scene or a recording')).toBeHidden();
       const before = await steps(page);
       await expect.poll(() => steps(page)).toBeGreaterThan(before);
     });
