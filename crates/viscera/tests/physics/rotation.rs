@@ -170,6 +170,25 @@ fn the_derivative_of_polar_is_that_of_finite_differences() {
     assert_eq!(nowhere, Mat3::ZERO, "a null F has no rotation to change");
 }
 
+/// It does not feel the size of F, down to where F counts as nothing; below, at 1e-107, third powers of F vanish, and with them what told
+/// the one from the other.
+#[test]
+fn the_derivative_of_polar_is_a_number_for_every_size() {
+    let mut random = Random::new(206);
+    let (f, df) = (random.matrix(), random.matrix());
+    let wanted = polar_along(&f, &polar(&f), &df);
+    for power in -320..=100 {
+        let size = 10f64.powi(power);
+        let (f, df) = (f * size, df * size);
+        let found = polar_along(&f, &polar(&f), &df);
+        let expected = if power < -31 { Mat3::ZERO } else { wanted };
+        assert!(
+            power == -31 || (found - expected).squared_norm() <= 1e-24 * wanted.squared_norm(),
+            "1e{power}: {found:?}"
+        );
+    }
+}
+
 /// One lane does not feel its neighbours, the hopeless among them.
 fn lanes_agree_with_scalars<T: Scalar>() {
     let all: Vec<Mat3<T>> = gradients().iter().map(|f| f.cast()).collect();

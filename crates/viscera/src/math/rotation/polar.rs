@@ -84,7 +84,7 @@ fn spin<R: Real>(s: Sym3<R>, a: Vec3<R>) -> Vec3<R> {
 
 /// The derivative of [`polar`] along `df`: R [w]×, (tr S I − S) w = axis of Rᵀ dF − dFᵀ R, S = RᵀF.
 ///
-/// Nothing where the rotation is hardly defined: ζ below 1e-6 ‖F‖³.
+/// Nothing where the rotation is hardly defined: ζ below 1e-6 ‖F‖³, or F so small that it counts as nothing.
 #[inline(always)]
 pub fn polar_along<R: Real>(f: &Mat3<R>, r: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
     let (unit, scale) = scaled(f);
@@ -94,6 +94,8 @@ pub fn polar_along<R: Real>(f: &Mat3<R>, r: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
     let size = unit.squared_norm();
     let defined = (size * size.sqrt() * scale.like(1e-6)).less_than(zeta);
     let w = Vec3::select(defined, w, w.zero_like());
+    // Scaled, the largest entry is 1, or else F is nothing: then both sides of the comparison may have vanished.
+    let w = Vec3::select(scale.like(0.5).less_than(size), w, w.zero_like());
     let [x, y, z] = r.columns;
     Mat3::from_columns(y * w.z - z * w.y, z * w.x - x * w.z, x * w.y - y * w.x)
 }
