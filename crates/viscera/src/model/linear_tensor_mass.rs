@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::sections::SectionScratch;
 use super::tensor_mass::{EntityLoop, Frame, LinearEdge, LinearVertex, RestShape};
-use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe};
 use crate::executor::{NodeBlocks, ReadBlocks, node_blocks};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
@@ -39,26 +39,14 @@ impl LinearTensorMass {
     }
 }
 
-impl ModelRecipe for LinearTensorMass {
-    fn kind(&self) -> ModelKind {
-        ModelKind::LinearTensorMass
-    }
+impl GenericRecipe for LinearTensorMass {
+    const KIND: ModelKind = ModelKind::LinearTensorMass;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-}
-
-impl LinearTensorMass {
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::LinearTensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
         if !LAWS.contains(&self.tissue.kind()) {
@@ -75,6 +63,8 @@ impl LinearTensorMass {
         }))
     }
 }
+
+recipe!(LinearTensorMass);
 
 #[derive(Clone, Debug)]
 struct LinearModel<T: Scalar> {

@@ -14,6 +14,7 @@ mod patch;
 mod penalty_frequency;
 mod precision;
 pub mod precomputed;
+mod recipe;
 mod registry;
 mod sections;
 pub mod shape_memory;
@@ -32,22 +33,17 @@ pub use mass_spring::MassSpring;
 pub use nodally_integrated::NodallyIntegrated;
 pub use precision::Precision;
 pub use precomputed::Precomputed;
+pub use recipe::ModelRecipe;
+pub(crate) use recipe::{GenericRecipe, recipe};
 pub use registry::{Claims, ModelInfo, ModelKind};
 pub use shape_memory::ShapeMemory;
 pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
-use std::sync::Arc;
-
-use self::frequency::{FrequencyBound, frequency_bound};
-use self::hybrid::Condensation;
-use self::precomputed::{Responses, Supports};
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
-use crate::material::Tissue;
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::mesh::VolumeMesh;
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
 ///
@@ -238,74 +234,4 @@ impl<T: Scalar> Scratch<T> {
 pub(crate) struct Sums<'a, T> {
     pub(crate) executor: &'a Executor,
     pub(crate) rows: &'a mut [[T; 4]],
-}
-
-/// What is needed to build a model for a mesh: what the user writes.
-pub trait ModelRecipe: std::fmt::Debug + Send + Sync {
-    /// The kind of model.
-    fn kind(&self) -> ModelKind;
-
-    /// The tissue that it is made of.
-    fn tissue(&self) -> &Tissue;
-
-    /// Builds the model in single precision.
-    ///
-    /// # Errors
-    /// [`ModelError`] where the model supports neither the law nor the cells, or a cell has no volume.
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError>;
-
-    /// Builds the model in double precision.
-    ///
-    /// # Errors
-    /// As [`ModelRecipe::build_single`].
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError>;
-
-    /// The recipe with what it finds out about a body that is held so, for models that depend on it; none for all others.
-    ///
-    /// # Errors
-    /// [`ModelError`] where a part of the body is held by nothing, or the tissue does not fit.
-    fn supported(&self, _supports: &Supports<'_>) -> Result<Option<Box<dyn ModelRecipe>>, ModelError> {
-        Ok(None)
-    }
-
-    /// The part of the body that follows its boundary, once the recipe knows the supports; none for models without one.
-    fn condensation(&self) -> Option<&Arc<Condensation>> {
-        None
-    }
-
-    /// How a body that is held so answers forces, where it does not move in time but rests at the end of every step; none for models
-    /// that move.
-    ///
-    /// # Errors
-    /// [`ModelError`] where nothing holds the body, or the responses that the model was given are not those of such a body.
-    fn responses(&self, _supports: &Supports<'_>) -> Result<Option<Arc<Responses>>, ModelError> {
-        Ok(None)
-    }
-
-    /// The bound of the body's highest frequency in single precision, for one density [kg/m³] or one for each cell, and the
-    /// volume-keeping stiffness κ [Pa]. That of the law, unless the model makes something else of it.
-    ///
-    /// # Errors
-    /// [`ModelError::Mesh`] for a cell without volume.
-    fn bound_single(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
-        frequency_bound(mesh, self.tissue(), density, keep_volume)
-    }
-
-    /// The same in double precision.
-    ///
-    /// # Errors
-    /// As [`ModelRecipe::bound_single`].
-    fn bound_double(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
-        frequency_bound(mesh, self.tissue(), density, keep_volume)
-    }
 }

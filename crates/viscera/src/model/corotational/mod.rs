@@ -34,9 +34,8 @@ use self::hex::CorotationalHexes;
 use self::tet::CorotationalTets;
 use super::frequency::FrequencyBound;
 use super::registry::Claims;
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe};
+use super::{ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, recipe};
 use crate::material::{LawKind, Tissue};
-use crate::math::Scalar;
 use crate::mesh::VolumeMesh;
 
 pub(super) const LAWS: &[LawKind] = &[LawKind::LinearElastic, LawKind::TransverseLinear];
@@ -116,44 +115,14 @@ pub(super) fn check_law(model: ModelKind, tissue: &Tissue) -> Result<(), ModelEr
     Err(ModelError::UnsupportedLaw { model, law: tissue.kind(), advice })
 }
 
-impl ModelRecipe for Corotational {
-    fn kind(&self) -> ModelKind {
-        ModelKind::Corotational
-    }
+impl GenericRecipe for Corotational {
+    const KIND: ModelKind = ModelKind::Corotational;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn bound_single(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
-        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
-    }
-
-    fn bound_double(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
-        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
-    }
-}
-
-impl Corotational {
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         check_law(ModelKind::Corotational, &self.tissue)?;
         self.tissue.check_count(mesh.cell_count())?;
         match mesh {
@@ -161,4 +130,15 @@ impl Corotational {
             VolumeMesh::Hex(mesh) => Ok(Box::new(CorotationalHexes::new(mesh, &self.tissue, self.formulation)?)),
         }
     }
+
+    fn bound<T: Precision>(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
+        frequency::bound(mesh, &self.tissue, density, keep_volume, self.formulation)
+    }
 }
+
+recipe!(Corotational);

@@ -16,7 +16,9 @@ use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{TET_EDGES, TetMesh, VolumeMesh};
 use crate::model::registry::Claims;
 use crate::model::tet_loop::RestTet;
-use crate::model::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use crate::model::{
+    BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe,
+};
 
 /// Numbers of a rotation.
 const ROTATION: usize = 9;
@@ -56,26 +58,14 @@ impl StiffnessWarping {
     }
 }
 
-impl ModelRecipe for StiffnessWarping {
-    fn kind(&self) -> ModelKind {
-        ModelKind::StiffnessWarping
-    }
+impl GenericRecipe for StiffnessWarping {
+    const KIND: ModelKind = ModelKind::StiffnessWarping;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-}
-
-impl StiffnessWarping {
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::StiffnessWarping;
         check_law(model, &self.tissue)?;
         self.tissue.check_count(mesh.cell_count())?;
@@ -83,6 +73,8 @@ impl StiffnessWarping {
         Ok(Box::new(WarpedTets::new(mesh, &self.tissue)?))
     }
 }
+
+recipe!(StiffnessWarping);
 
 #[derive(Clone, Debug)]
 struct WarpedTets<T> {

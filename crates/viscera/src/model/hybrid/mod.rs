@@ -25,7 +25,10 @@ use force::HybridModel;
 
 use super::frequency::{FrequencyBound, frequency_bound};
 use super::precomputed::{Supports, linear_model};
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Precision, TensorMass, TotalLagrangian};
+use super::{
+    ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, ModelRecipe, Precision, TensorMass, TotalLagrangian,
+    recipe,
+};
 use crate::executor::Executor;
 use crate::material::{LawKind, Tissue};
 use crate::mesh::{Mesh, Region, VolumeMesh};
@@ -82,26 +85,6 @@ impl Hybrid {
             None => self.condense(&Supports { mesh, filters: &vec![Filter::Free; mesh.nodes().len()] }),
         }
     }
-
-    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
-        let condensation = self.condensed(mesh)?;
-        let tissue = self.tissue.of_cells(condensation.dynamic_cells());
-        let part = part(mesh, condensation.dynamic_cells());
-        let moving = T::build_model(moving_model(&tissue, &part).as_ref(), &part)?;
-        Ok(Box::new(HybridModel::new(moving, condensation, mesh)))
-    }
-
-    /// The cells that vibrate: those that move, and those of the rest that move with the boundary.
-    fn bound<T: Precision>(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
-        let mut bound = frequency_bound(mesh, &self.tissue, density, keep_volume)?;
-        bound.remove(&self.condensed(mesh)?.inner_cells(mesh));
-        Ok(bound)
-    }
 }
 
 /// What computes the forces of the part that moves.
@@ -126,21 +109,31 @@ fn part(mesh: &VolumeMesh, cells: &[u32]) -> VolumeMesh {
     }
 }
 
-impl ModelRecipe for Hybrid {
-    fn kind(&self) -> ModelKind {
-        ModelKind::Hybrid
-    }
+impl GenericRecipe for Hybrid {
+    const KIND: ModelKind = ModelKind::Hybrid;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+        let condensation = self.condensed(mesh)?;
+        let tissue = self.tissue.of_cells(condensation.dynamic_cells());
+        let part = part(mesh, condensation.dynamic_cells());
+        let moving = T::build_model(moving_model(&tissue, &part).as_ref(), &part)?;
+        Ok(Box::new(HybridModel::new(moving, condensation, mesh)))
     }
 
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
+    /// The cells that vibrate: those that move, and those of the rest that move with the boundary.
+    fn bound<T: Precision>(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
+        let mut bound = frequency_bound(mesh, &self.tissue, density, keep_volume)?;
+        bound.remove(&self.condensed(mesh)?.inner_cells(mesh));
+        Ok(bound)
     }
 
     fn supported(&self, supports: &Supports<'_>) -> Result<Option<Box<dyn ModelRecipe>>, ModelError> {
@@ -151,22 +144,6 @@ impl ModelRecipe for Hybrid {
     fn condensation(&self) -> Option<&Arc<Condensation>> {
         self.condensation.as_ref()
     }
-
-    fn bound_single(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
-
-    fn bound_double(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
 }
+
+recipe!(Hybrid);

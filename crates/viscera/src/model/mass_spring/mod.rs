@@ -20,9 +20,8 @@ use self::net::{Net, NetBound};
 use super::frequency::FrequencyBound;
 use super::penalty_frequency::with_penalty;
 use super::registry::Claims;
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe};
+use super::{ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, recipe};
 use crate::material::{LawKind, Tissue};
-use crate::math::Scalar;
 use crate::mesh::VolumeMesh;
 
 /// Springs along the edges of tetrahedra, and along edges and diagonals of hexahedra.
@@ -67,13 +66,21 @@ impl MassSpring {
         let advice = "springs know Young's modulus alone; take the law `linear`, or the model `total-lagrangian`";
         Err(ModelError::UnsupportedLaw { model: ModelKind::MassSpring, law: self.tissue.kind(), advice })
     }
+}
 
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+impl GenericRecipe for MassSpring {
+    const KIND: ModelKind = ModelKind::MassSpring;
+
+    fn tissue(&self) -> &Tissue {
+        &self.tissue
+    }
+
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.check(mesh)?;
         Ok(Box::new(Net::new(mesh, &self.tissue)?))
     }
 
-    fn bound<T: Scalar>(
+    fn bound<T: Precision>(
         &self,
         mesh: &VolumeMesh,
         density: &[f64],
@@ -84,38 +91,4 @@ impl MassSpring {
     }
 }
 
-impl ModelRecipe for MassSpring {
-    fn kind(&self) -> ModelKind {
-        ModelKind::MassSpring
-    }
-
-    fn tissue(&self) -> &Tissue {
-        &self.tissue
-    }
-
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn bound_single(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
-
-    fn bound_double(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
-}
+recipe!(MassSpring);

@@ -24,7 +24,7 @@ mod rest;
 
 use self::points::NodalPoints;
 use super::registry::Claims;
-use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe};
 use crate::material::{
     LawFamily, LawKind, NeoHookean, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
 };
@@ -73,7 +73,20 @@ impl NodallyIntegrated {
         self
     }
 
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn of_law<T: Scalar, L: LawFamily>(&self, mesh: &TetMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+        let share = |cell: usize| self.share * self.tissue.at_rest(cell).lame.mu;
+        Ok(Box::new(NodalPoints::<T, L>::new(mesh, &self.tissue, share)?))
+    }
+}
+
+impl GenericRecipe for NodallyIntegrated {
+    const KIND: ModelKind = ModelKind::NodallyIntegrated;
+
+    fn tissue(&self) -> &Tissue {
+        &self.tissue
+    }
+
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
         if !(0.0..1.0).contains(&self.share) {
             let (name, range) = ("stabilise", "zero or positive, and less than 1");
@@ -92,30 +105,9 @@ impl NodallyIntegrated {
             }
         }
     }
-
-    fn of_law<T: Scalar, L: LawFamily>(&self, mesh: &TetMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
-        let share = |cell: usize| self.share * self.tissue.at_rest(cell).lame.mu;
-        Ok(Box::new(NodalPoints::<T, L>::new(mesh, &self.tissue, share)?))
-    }
 }
 
-impl ModelRecipe for NodallyIntegrated {
-    fn kind(&self) -> ModelKind {
-        ModelKind::NodallyIntegrated
-    }
-
-    fn tissue(&self) -> &Tissue {
-        &self.tissue
-    }
-
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-}
+recipe!(NodallyIntegrated);
 
 impl<T: Scalar, L: LawFamily> ForceModel<T> for NodalPoints<T, L> {
     fn name(&self) -> &'static str {

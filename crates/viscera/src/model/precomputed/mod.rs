@@ -28,7 +28,10 @@ pub(crate) use responses::stiffness;
 pub use supports::Supports;
 
 use super::linear_tensor_mass::LAWS;
-use super::{ForceModel, LinearTensorMass, ModelError, ModelInfo, ModelKind, ModelRecipe, TotalLagrangian};
+use super::{
+    ForceModel, GenericRecipe, LinearTensorMass, ModelError, ModelInfo, ModelKind, ModelRecipe, Precision,
+    TotalLagrangian, recipe,
+};
 use crate::executor::Executor;
 use crate::material::Tissue;
 use crate::mesh::VolumeMesh;
@@ -88,23 +91,16 @@ pub(super) fn linear_model(tissue: &Tissue, mesh: &VolumeMesh) -> Box<dyn ModelR
     }
 }
 
-impl ModelRecipe for Precomputed {
-    fn kind(&self) -> ModelKind {
-        ModelKind::Precomputed
-    }
+impl GenericRecipe for Precomputed {
+    const KIND: ModelKind = ModelKind::Precomputed;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.check()?;
-        linear_model(&self.tissue, mesh).build_single(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.check()?;
-        linear_model(&self.tissue, mesh).build_double(mesh)
+        T::build_model(linear_model(&self.tissue, mesh).as_ref(), mesh)
     }
 
     fn responses(&self, supports: &Supports<'_>) -> Result<Option<Arc<Responses>>, ModelError> {
@@ -117,3 +113,5 @@ impl ModelRecipe for Precomputed {
         Ok(Some(Arc::new(Responses::compute(&self.tissue, supports, solver, &executor, &|_, _| ())?)))
     }
 }
+
+recipe!(Precomputed);

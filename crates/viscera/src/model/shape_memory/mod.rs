@@ -37,7 +37,7 @@ use self::neighbourhoods::Neighbourhoods;
 use super::frequency::FrequencyBound;
 use super::penalty_frequency::with_penalty;
 use super::registry::Claims;
-use super::{ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe};
+use super::{ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, recipe};
 use crate::material::{LawKind, Tissue};
 use crate::math::Scalar;
 use crate::mesh::VolumeMesh;
@@ -85,12 +85,20 @@ impl ShapeMemory {
         }
         Neighbourhoods::new(mesh, &self.tissue)
     }
+}
 
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+impl GenericRecipe for ShapeMemory {
+    const KIND: ModelKind = ModelKind::ShapeMemory;
+
+    fn tissue(&self) -> &Tissue {
+        &self.tissue
+    }
+
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         Ok(Box::new(self.neighbourhoods::<T>(mesh)?))
     }
 
-    fn bound<T: Scalar>(
+    fn bound<T: Precision>(
         &self,
         mesh: &VolumeMesh,
         density: &[f64],
@@ -101,38 +109,4 @@ impl ShapeMemory {
     }
 }
 
-impl ModelRecipe for ShapeMemory {
-    fn kind(&self) -> ModelKind {
-        ModelKind::ShapeMemory
-    }
-
-    fn tissue(&self) -> &Tissue {
-        &self.tissue
-    }
-
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn bound_single(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f32>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
-
-    fn bound_double(
-        &self,
-        mesh: &VolumeMesh,
-        density: &[f64],
-        keep_volume: f64,
-    ) -> Result<Box<dyn FrequencyBound<f64>>, ModelError> {
-        self.bound(mesh, density, keep_volume)
-    }
-}
+recipe!(ShapeMemory);

@@ -29,7 +29,7 @@ pub(crate) use self::entity_loop::EntityLoop;
 pub(crate) use self::frame::Frame;
 pub(crate) use self::shape::RestShape;
 use super::sections::{SectionScratch, SectionSums};
-use super::{BlockSink, ForceModel, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe};
 use crate::executor::{NodeBlocks, ReadBlocks, node_blocks};
 use crate::material::{LawKind, Tissue};
 use crate::math::{Scalar, Vec3};
@@ -70,26 +70,14 @@ impl TensorMass {
     }
 }
 
-impl ModelRecipe for TensorMass {
-    fn kind(&self) -> ModelKind {
-        ModelKind::TensorMass
-    }
+impl GenericRecipe for TensorMass {
+    const KIND: ModelKind = ModelKind::TensorMass;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-}
-
-impl TensorMass {
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::TensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
         if !LAWS.contains(&self.tissue.kind()) {
@@ -114,6 +102,8 @@ impl TensorMass {
         }))
     }
 }
+
+recipe!(TensorMass);
 
 #[derive(Clone, Debug)]
 struct TensorMassModel<T: Scalar> {

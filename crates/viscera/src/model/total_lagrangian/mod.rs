@@ -13,7 +13,9 @@ use self::hex::HexLoop;
 use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
-use super::{BlockSink, ForceModel, MeanForces, ModelError, ModelInfo, ModelKind, ModelRecipe, Scratch};
+use super::{
+    BlockSink, ForceModel, GenericRecipe, MeanForces, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe,
+};
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
@@ -52,26 +54,14 @@ impl TotalLagrangian {
     }
 }
 
-impl ModelRecipe for TotalLagrangian {
-    fn kind(&self) -> ModelKind {
-        ModelKind::TotalLagrangian
-    }
+impl GenericRecipe for TotalLagrangian {
+    const KIND: ModelKind = ModelKind::TotalLagrangian;
 
     fn tissue(&self) -> &Tissue {
         &self.tissue
     }
 
-    fn build_single(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f32>>, ModelError> {
-        self.build(mesh)
-    }
-
-    fn build_double(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<f64>>, ModelError> {
-        self.build(mesh)
-    }
-}
-
-impl TotalLagrangian {
-    fn build<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
+    fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
         let law = self.tissue.kind();
         match mesh {
@@ -91,6 +81,8 @@ impl TotalLagrangian {
         }
     }
 }
+
+recipe!(TotalLagrangian);
 
 /// Builds the plain element of whichever law it is.
 struct Build<'a, T> {
