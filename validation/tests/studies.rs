@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use viscera::material::LawKind;
 use viscera::model::ModelKind;
 use viscera_validation::torture::{self, End, Outcome};
+use viscera_validation::truth_cube::Variant;
 use viscera_validation::{
     Settings, Size, StudyKind, cantilevers, extrapolation, fixed_beam, frequencies, multigrid, nearly_incompressible,
     truth_cube,
@@ -99,6 +100,16 @@ fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_me
     }
     let forces = found.rows.iter().filter(|row| !row.variant.is_free_of_locking());
     assert!(forces.filter_map(|row| row.outcome.as_ref()).all(|outcome| outcome.force > 3.0), "plain elements lock");
+}
+
+/// Every number of the published column, at all three strains, within a tenth of a point.
+#[test]
+fn the_truth_cube_of_hexahedra_meets_the_published_column_of_large_strain() {
+    let Some(beads) = measured_beads() else { return };
+    let hexahedra = ("hexahedra, neo-Hookean".to_owned(), 8);
+    let variants: Vec<_> = Variant::all(false).into_iter().filter(|variant| variant.name() == hexahedra.0).collect();
+    let [_, _, published, converged] = truth_cube::study_on(&[8], &variants, Some(&beads)).unwrap().meeting();
+    assert!(published.contains(&hexahedra) && converged.contains(&hexahedra), "{published:?} {converged:?}");
 }
 
 /// From one thousand to ten thousand tetrahedra and more, at rest: twice as many iterations with the blocks on the diagonal, and a

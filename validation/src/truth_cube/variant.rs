@@ -30,7 +30,7 @@ pub(super) enum Kind {
 
 impl Variant {
     /// All of them, or those that a test has time for.
-    pub(super) fn all(full: bool) -> Vec<Self> {
+    pub fn all(full: bool) -> Vec<Self> {
         let variant = |cells, kind| Self { cells, kind };
         let mut variants = Vec::new();
         for nodal in [false, true] {
@@ -70,7 +70,7 @@ impl Variant {
     }
 
     /// What the table calls it.
-    pub(super) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         let how = match &self.kind {
             Kind::SmallStrain { nodal: false } => "small strain".into(),
             Kind::SmallStrain { nodal: true } => "small strain, integrated at the nodes".into(),

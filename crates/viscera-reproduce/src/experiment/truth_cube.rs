@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use viscera_validation::truth_cube::{self, Row};
+use viscera_validation::truth_cube::{self, Row, Variant};
 use viscera_validation::{Settings, Size};
 
 use super::Experiment;
@@ -42,7 +42,7 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
         ));
     };
     let cells = if settings.size == Size::Full { 10 } else { 6 };
-    let study = truth_cube::study_on(&[cells], false, Some(measured))?;
+    let study = truth_cube::study_on(&[cells], &Variant::all(false), Some(measured))?;
     let mut section = Section::new(SHOWN)
         .setting("cube", format!("80 mm, {cells} cells to an edge"))
         .setting("silicone", "E = 14.9 kPa, ν = 0.499")
