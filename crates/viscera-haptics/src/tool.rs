@@ -122,7 +122,7 @@ impl Tool {
         offset: Vector,
     ) -> Result<(Vector, Contact), ToolError> {
         let pose_there = ToolPose { tip: pose.position + offset, ..tool_pose(pose) };
-        world.set_tool(self.instrument, ToolInput { pose: pose_there, trigger: pose.trigger })?;
+        world.set_tool(self.instrument, ToolInput::new(pose_there, pose.trigger))?;
         world.step()?;
         let seen = world.observe_instrument(self.instrument);
         let contact = if seen.held_nodes > 0 { Contact::Holding } else { Contact::Pressing };

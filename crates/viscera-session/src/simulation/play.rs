@@ -149,12 +149,12 @@ impl Play {
         Ok(())
     }
 
-    /// Says where an instrument should be at the end of the next step.
+    /// Says where an instrument should be at the end of the next step, or go as fast as it may.
     pub(crate) fn lead_tool(&mut self, instrument: u32, hand: &Hand, stamp: Option<f64>) -> Result<(), Box<Refusal>> {
         self.tool(instrument)?;
-        tools::lead(&mut self.world, instrument, hand).map_err(refuse::because)?;
+        tools::lead(&mut self.world, instrument, self.ball.1, hand).map_err(refuse::because)?;
         if let Some(ghost) = &mut self.ghost {
-            tools::lead(&mut ghost.world, instrument, hand).map_err(refuse::because)?;
+            tools::lead(&mut ghost.world, instrument, self.ball.1, hand).map_err(refuse::because)?;
         }
         let tool = &mut self.tools[instrument as usize];
         (tool.scripted, tool.stamp) = (false, stamp);

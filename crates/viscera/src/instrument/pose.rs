@@ -26,6 +26,21 @@ pub struct ToolInput {
     pub pose: ToolPose,
     /// From 0 (jaws open, current off) to 1 (jaws closed, full current).
     pub trigger: f64,
+    /// How fast its tip goes there at most [m/s, > 0]; without bound it is there at the end of the next step, however far that is.
+    pub speed: f64,
+}
+
+impl ToolInput {
+    /// At a pose by the end of the next step.
+    pub const fn new(pose: ToolPose, trigger: f64) -> Self {
+        Self { pose, trigger, speed: f64::INFINITY }
+    }
+
+    /// Where a tool that is at `from` comes in `time` [s].
+    pub(crate) fn reached(&self, from: &ToolPose, time: f64) -> ToolPose {
+        let (way, most) = ((self.pose.tip - from.tip).norm(), self.speed * time);
+        if way > most { from.towards(&self.pose, most / way) } else { self.pose }
+    }
 }
 
 /// How a tool is led along its path, apart from where its tip is.

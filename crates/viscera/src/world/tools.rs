@@ -75,8 +75,8 @@ impl<T: Scalar> World<T> {
     }
 
     /// Leads an instrument by hand, over its path, until [`World::release_tool`]: at the end of the next step it is where `input`
-    /// says, and on the way it goes straight. Tissue in between is pushed along, however fast it goes. One that has not taken a step yet is
-    /// put there at once.
+    /// says, or as far on the way as its speed brings it, and it goes straight. Tissue in between is pushed along, however fast it goes. One
+    /// that has not taken a step yet is put there at once.
     ///
     /// # Errors
     /// [`WorldError::MissingInstrument`] for one that is not there; [`WorldError::Instrument`] for a pose that is none.
@@ -87,6 +87,10 @@ impl<T: Scalar> World<T> {
         if input.trigger.is_nan() {
             let (name, range) = ("trigger", "between 0 and 1");
             return Err(InstrumentError::OutOfRange { kind, name, value: input.trigger, range }.into());
+        }
+        if input.speed.is_nan() || input.speed <= 0.0 {
+            let (name, range) = ("speed", "positive [m/s]");
+            return Err(InstrumentError::OutOfRange { kind, name, value: input.speed, range }.into());
         }
         let pose = self.instrument(id).mount().guide(input.pose);
         let tool = &mut self.tools[id.0];
@@ -181,15 +185,18 @@ impl<T: Scalar> World<T> {
         for number in 0..self.tools.len() {
             let tool = self.tools[number];
             let Some(instrument) = &self.instruments[number] else {
-                self.motion.goals.push(ToolInput { pose: tool.pose, trigger: tool.trigger });
+                self.motion.goals.push(ToolInput::new(tool.pose, tool.trigger));
                 continue;
             };
             let goal = match tool.hand {
-                Some(hand) => ToolInput { pose: instrument.mount().guide(hand.pose), ..hand },
-                None => ToolInput {
-                    pose: scripted_pose(instrument.as_ref(), span.to),
-                    trigger: f64::from(u8::from(instrument.is_active_before(span.to))),
-                },
+                Some(hand) => {
+                    let pose = hand.reached(&tool.pose, span.to - span.from);
+                    ToolInput { pose: instrument.mount().guide(pose), ..hand }
+                }
+                None => ToolInput::new(
+                    scripted_pose(instrument.as_ref(), span.to),
+                    f64::from(u8::from(instrument.is_active_before(span.to))),
+                ),
             };
             self.motion.goals.push(goal);
             let closes = goal.trigger >= CLOSED;

@@ -8,7 +8,7 @@ use viscera::world::{InstrumentId, World, WorldError};
 use super::support::*;
 
 fn input(tip: Vector, trigger: f64) -> ToolInput {
-    ToolInput { pose: ToolPose { tip, direction: Vector::new(0.0, -1.0, 0.0), roll: 0.0 }, trigger }
+    ToolInput::new(ToolPose { tip, direction: Vector::new(0.0, -1.0, 0.0), roll: 0.0 }, trigger)
 }
 
 fn bar() -> (World<f64>, viscera::world::BodyId) {
@@ -34,6 +34,27 @@ fn a_tool_goes_where_the_hand_leads_it() {
     world.release_tool(id).unwrap();
     world.step().unwrap();
     assert_eq!(world.tool(id).pose.tip, path.at(world.time()));
+}
+
+/// With a speed it takes as many steps as it needs, on a straight line, turns as it goes, and is there at last.
+#[test]
+fn a_tool_goes_no_faster_than_its_hand_lets_it() {
+    let mut world = world::<f64>([0.0; 3], 5e-3, EXPLICIT);
+    let id = world.add_instrument(Probe::default()).unwrap();
+    world.step().unwrap();
+    let (tip, start) = (Vector::new(0.3, 0.4, 0.0), world.tool(id).pose.tip);
+    let pose = ToolPose { direction: Vector::new(1.0, 0.0, 0.0), ..input(tip, 0.0).pose };
+    world.set_tool(id, ToolInput { speed: 4.0, ..ToolInput::new(pose, 1.0) }).unwrap();
+    for step in 1..=24 {
+        world.step().unwrap();
+        let expected = start + (tip - start) * (f64::from(step) * 0.02 / 0.5);
+        assert_vector(world.tool(id).pose.tip, expected, 1e-14);
+    }
+    assert!(world.tool(id).pose.direction.x > 0.9);
+    for _ in 0..2 {
+        world.step().unwrap();
+        assert_eq!(world.tool(id).pose, pose);
+    }
 }
 
 /// The trigger closes the jaws at one half, and opens them below.
@@ -102,6 +123,8 @@ fn poses_that_are_none_are_refused() {
     let good = input(Vector::ZERO, 0.0);
     let bad = [
         ToolInput { trigger: f64::NAN, ..good },
+        ToolInput { speed: 0.0, ..good },
+        ToolInput { speed: f64::NAN, ..good },
         input(Vector::new(f64::INFINITY, 0.0, 0.0), 0.0),
         ToolInput { pose: ToolPose { direction: Vector::ZERO, ..good.pose }, ..good },
         ToolInput { pose: ToolPose { roll: f64::NAN, ..good.pose }, ..good },

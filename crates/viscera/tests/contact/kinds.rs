@@ -48,7 +48,7 @@ impl Telling {
             let tip = Vector::new(0.041 + aside, 0.06 - down, 0.028 + 0.3 * aside);
             let direction = Vector::new(0.2, -1.0, 0.1);
             let pose = ToolPose { tip: self.place(tip), direction: self.turn * direction, roll: self.roll };
-            world.set_tool(id, ToolInput { pose, trigger: if t > 0.4 { 1.0 } else { 0.0 } }).unwrap();
+            world.set_tool(id, ToolInput::new(pose, if t > 0.4 { 1.0 } else { 0.0 })).unwrap();
             world.step().unwrap();
         }
     }

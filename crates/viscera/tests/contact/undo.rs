@@ -29,8 +29,8 @@ fn a_refused_step_takes_the_tools_back() {
         let tool = world.add_instrument(Grasper { radius: 0.025, ..Grasper::default() }).unwrap();
         (world, tool)
     };
-    let near = ToolInput { pose: pose(Vector::new(0.08, 0.02, 0.02)), trigger: 1.0 };
-    let far = ToolInput { pose: pose(Vector::new(5e4, 0.02, 0.02)), trigger: 1.0 };
+    let near = ToolInput::new(pose(Vector::new(0.08, 0.02, 0.02)), 1.0);
+    let far = ToolInput::new(pose(Vector::new(5e4, 0.02, 0.02)), 1.0);
     let ((mut tried, tool), (mut plain, _)) = (build(), build());
     for world in [&mut tried, &mut plain] {
         world.set_tool(tool, near).unwrap();
@@ -64,11 +64,11 @@ fn several_tools_touch_several_bodies() {
             let height = 0.05 - 3e-3 * f64::from(step);
             for (tool, x) in tools.into_iter().zip([0.021, 0.108]) {
                 let pose = pose(Vector::new(x, height, 0.0131));
-                world.set_tool(tool, ToolInput { pose, trigger: 0.0 }).unwrap();
+                world.set_tool(tool, ToolInput::new(pose, 0.0)).unwrap();
             }
             let pose =
                 ToolPose { tip: Vector::new(0.26, height, 0.044), direction: Vector::new(1.0, 0.0, 0.0), roll: 0.0 };
-            world.set_tool(across, ToolInput { pose, trigger: 0.0 }).unwrap();
+            world.set_tool(across, ToolInput::new(pose, 0.0)).unwrap();
             world.step().unwrap();
             for id in world.instrument_ids() {
                 touched[id.0] |= world.tool(id).contact_force != Vector::ZERO;
@@ -96,7 +96,7 @@ fn tissue_is_touched_where_a_cut_has_left_it() {
         for step in 0..40 {
             // Down into the bar: its rod would be stopped where its heat did not clear the way.
             let tip = Vector::new(0.041, 0.045 - 6e-4 * f64::from(step), 0.021);
-            world.set_tool(hook, ToolInput { pose: pose(tip), trigger: 1.0 }).unwrap();
+            world.set_tool(hook, ToolInput::new(pose(tip), 1.0)).unwrap();
             world.step().unwrap();
         }
         assert!(world.body(id).state().removed_count > 10);
@@ -105,7 +105,7 @@ fn tissue_is_touched_where_a_cut_has_left_it() {
         // Without current it meets the floor.
         for step in 0..25 {
             let tip = Vector::new(0.041, 0.0216 - 6e-4 * f64::from(step), 0.021);
-            world.set_tool(hook, ToolInput { pose: pose(tip), trigger: 0.0 }).unwrap();
+            world.set_tool(hook, ToolInput::new(pose(tip), 0.0)).unwrap();
             world.step().unwrap();
         }
         assert!(world.tool(hook).contact_force.y < 0.0, "{integrator:?}: {:?}", world.tool(hook));
