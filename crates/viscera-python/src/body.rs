@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
-use viscera::body::{Body, Load, LoosePieces};
+use viscera::body::{Body, Load, LoosePieces, Muscle};
 use viscera::curve::Curve;
 use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
@@ -13,7 +13,7 @@ use viscera::mesh::{Region, VolumeMesh};
 use crate::arrays::{Numbers, scalars};
 use crate::mesh::PyVolumeMesh;
 use crate::model::{AnyModel, PyModel, choose};
-use crate::region::{PyLoad, number_curve, region, vector_curve};
+use crate::region::{PyLoad, PyMuscle, number_curve, region, vector_curve};
 
 /// A body to be added to a world: a mesh, its tissue, and what holds and pulls it.
 #[pyclass(frozen, name = "Body", module = "viscera")]
@@ -33,6 +33,9 @@ pub(crate) struct Description {
     pub(crate) fixed: Vec<Region>,
     pub(crate) prescribed: Vec<(Region, Curve<Vec3<f64>>)>,
     pub(crate) guided: Vec<(Region, [f64; 3], Curve<f64>)>,
+    pub(crate) exact_volumes: Vec<(String, Region)>,
+    pub(crate) rigid: Vec<Region>,
+    pub(crate) muscles: Vec<Muscle>,
     pub(crate) loads: Vec<Load>,
     pub(crate) loose_pieces: LoosePieces,
 }
@@ -58,6 +61,15 @@ impl Description {
         }
         for (region, normal, curve) in &self.guided {
             body = body.prescribe_along(region.clone(), *normal, curve.clone());
+        }
+        for (name, region) in &self.exact_volumes {
+            body = body.keep_volume_exactly(name, region.clone());
+        }
+        for region in &self.rigid {
+            body = body.rigid(region.clone());
+        }
+        for muscle in &self.muscles {
+            body = body.muscle(muscle.clone());
         }
         for load in &self.loads {
             body = body.load(load.clone());
@@ -87,11 +99,13 @@ impl PyBody {
     /// `keep_volume`: stiffness of the volume-keeping force on each tetrahedron [Pa, ≥ 0]. `damping`: rate [1/s, ≥ 0].
     /// `stiffness_damping`: α of Rayleigh's damping [s, ≥ 0], implicit steps only. One or a list of: `fix`, regions that stay;
     /// `slide`, (region, normal) that move across the normal only; `prescribe`, (region, displacement) moved as a `Curve` says
-    /// [m]; `prescribe_along`, (region, normal, displacement along it); `load`, loads. `loose_pieces`: "free" or "drop" what a
-    /// cut separates from everything that holds it.
+    /// [m]; `prescribe_along`, (region, normal, displacement along it); `load`, loads. With explicit steps also: `keep_volume_exactly`,
+    /// (name, region of cells) whose common volume is kept to rounding; `rigid`, regions of nodes that each move as one rigid body;
+    /// `muscle`, muscles. `loose_pieces`: "free" or "drop" what a cut separates from everything that holds it.
     #[new]
     #[pyo3(signature = (mesh, density, *, model, name="body", keep_volume=0.0, damping=0.0, stiffness_damping=0.0, fix=None,
-        slide=None, prescribe=None, prescribe_along=None, load=None, loose_pieces="free"))]
+        slide=None, prescribe=None, prescribe_along=None, load=None, keep_volume_exactly=None, rigid=None, muscle=None,
+        loose_pieces="free"))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         mesh: &PyVolumeMesh,
@@ -106,6 +120,9 @@ impl PyBody {
         prescribe: Option<&Bound<'_, PyAny>>,
         prescribe_along: Option<&Bound<'_, PyAny>>,
         load: Option<&Bound<'_, PyAny>>,
+        keep_volume_exactly: Option<&Bound<'_, PyAny>>,
+        rigid: Option<&Bound<'_, PyAny>>,
+        muscle: Option<&Bound<'_, PyAny>>,
         loose_pieces: &str,
     ) -> PyResult<Self> {
         let densities = scalars(&density, "density")?;
@@ -127,6 +144,11 @@ impl PyBody {
             let item = pieces(&item, 2, "prescribe is (region, displacement)")?;
             prescribed.push((region(&item.get_item(0)?)?, vector_curve(&item.get_item(1)?)?));
         }
+        let mut exact_volumes = Vec::new();
+        for item in each(keep_volume_exactly)? {
+            let item = pieces(&item, 2, "keep_volume_exactly is (name, region)")?;
+            exact_volumes.push((item.get_item(0)?.extract()?, region(&item.get_item(1)?)?));
+        }
         Ok(Self(Description {
             name: name.into(),
             mesh: mesh.mesh.clone(),
@@ -138,6 +160,12 @@ impl PyBody {
             fixed: each(fix)?.iter().map(region).collect::<PyResult<_>>()?,
             prescribed,
             guided,
+            exact_volumes,
+            rigid: each(rigid)?.iter().map(region).collect::<PyResult<_>>()?,
+            muscles: each(muscle)?
+                .iter()
+                .map(|muscle| Ok(muscle.cast::<PyMuscle>()?.get().0.clone()))
+                .collect::<PyResult<_>>()?,
             loads: each(load)?
                 .iter()
                 .map(|load| Ok(load.cast::<PyLoad>()?.get().0.clone()))

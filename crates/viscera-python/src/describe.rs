@@ -9,7 +9,7 @@ use std::path::Path;
 use indexmap::IndexMap;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use viscera::body::{Load, LoosePieces, NodeMotion};
+use viscera::body::{Load, LoosePieces, Muscle, NodeMotion};
 use viscera::curve::Curve;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::dynamics::quasi_static::QuasiStatic;
@@ -178,6 +178,12 @@ fn body(body: &Description, file: &str, attached: &[Json]) -> PyResult<Json> {
             "displacement": curve(way, vector),
         }).collect::<Vec<_>>()),
         "attach": Json::from(attached.to_vec()),
+        "exact-volume": Json::from(body.exact_volumes.iter().map(|(name, at)| object! {
+            "name": Json::from(name.as_str()),
+            "region": region(at),
+        }).collect::<Vec<_>>()),
+        "rigid": each(&body.rigid),
+        "muscle": Json::from(body.muscles.iter().map(muscle).collect::<Vec<_>>()),
         "load": Json::from(body.loads.iter().map(load).collect::<Vec<_>>()),
     })
 }
@@ -190,6 +196,15 @@ fn curve<V: viscera::curve::CurveValue>(curve: &Curve<V>, value: impl Fn(V) -> J
     match curve.points() {
         [(_, constant)] => value(*constant),
         points => points.iter().map(|&(time, at)| Json::from(vec![Json::from(time), value(at)])).collect(),
+    }
+}
+
+fn muscle(muscle: &Muscle) -> Json {
+    object! {
+        "region": region(&muscle.region),
+        "stiffness": Json::from(muscle.stiffness),
+        "contraction": Json::from(muscle.contraction),
+        "activation": curve(&muscle.activation, Json::from),
     }
 }
 

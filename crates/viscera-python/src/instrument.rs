@@ -201,8 +201,9 @@ impl PyTool {
 
     /// Leads the tool by hand from now on, over its path: at the end of the next step its tip is at `tip` [m], pointing along
     /// `direction` (any length; down where none is given, and where it has a trocar that decides), turned by `roll` [rad], with the
-    /// trigger from 0 (jaws open, current off) to 1.
-    #[pyo3(signature = (tip, *, direction=None, roll=0.0, trigger=0.0))]
+    /// trigger from 0 (jaws open, current off) to 1. With a `speed` [m/s, > 0] it goes there no faster than that, in as many steps as it
+    /// needs.
+    #[pyo3(signature = (tip, *, direction=None, roll=0.0, trigger=0.0, speed=f64::INFINITY))]
     fn lead(
         &self,
         py: Python<'_>,
@@ -210,9 +211,11 @@ impl PyTool {
         direction: Option<[f64; 3]>,
         roll: f64,
         trigger: f64,
+        speed: f64,
     ) -> PyResult<()> {
         let direction = direction.unwrap_or([0.0, -1.0, 0.0]).into();
-        let input = ToolInput { pose: ToolPose { tip: tip.into(), direction, roll }, trigger };
+        let pose = ToolPose { tip: tip.into(), direction, roll };
+        let input = ToolInput { speed, ..ToolInput::new(pose, trigger) };
         in_world!(&mut self.world.try_borrow_mut(py)?.world, world => world.set_tool(self.id, input)).or_raise()
     }
 

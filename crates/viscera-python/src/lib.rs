@@ -39,6 +39,7 @@ fn _viscera(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<region::PyRegion>()?;
     module.add_class::<region::PyCurve>()?;
     module.add_class::<region::PyLoad>()?;
+    module.add_class::<region::PyMuscle>()?;
     module.add_class::<body::PyBody>()?;
     module.add_class::<integrator::PyExplicit>()?;
     module.add_class::<integrator::PyImplicit>()?;
@@ -51,6 +52,7 @@ fn _viscera(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<report::PyImplicitReport>()?;
     module.add_class::<report::PyStaticReport>()?;
     module.add_class::<report::PyBodyObservables>()?;
+    module.add_class::<report::PyKeptVolume>()?;
     module.add_class::<report::PyInstrumentObservables>()?;
     module.add_class::<scene::PyScene>()?;
     module.add_class::<ensemble::PyThreads>()?;

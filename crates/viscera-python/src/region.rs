@@ -2,7 +2,7 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use viscera::body::Load;
+use viscera::body::{Load, Muscle};
 use viscera::curve::{Curve, CurveValue};
 use viscera::math::Vec3;
 use viscera::mesh::{Point, Region};
@@ -198,5 +198,32 @@ impl PyLoad {
     #[staticmethod]
     fn traction(region: &Bound<'_, PyAny>, traction: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self(Load::Traction { region: self::region(region)?, traction: vector_curve(traction)? }))
+    }
+}
+
+/// A membrane of muscle in a body or on it: all faces of the mesh whose nodes lie in the region, whose edges shorten as it is activated.
+/// Explicit steps only.
+#[pyclass(frozen, name = "Muscle", module = "viscera")]
+pub(crate) struct PyMuscle(pub(crate) Muscle);
+
+#[pymethods]
+impl PyMuscle {
+    /// `stiffness`: Young's modulus times thickness [N/m, > 0]. `contraction`: the share of their length by which the edges shorten at
+    /// full activation [≥ 0, < 1]. `activation`: from 0 to 1, a number, a `Curve` or points (time [s], activation).
+    #[new]
+    #[pyo3(signature = (region, *, stiffness, contraction, activation))]
+    fn new(
+        region: &Bound<'_, PyAny>,
+        stiffness: f64,
+        contraction: f64,
+        activation: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let region = self::region(region)?;
+        Ok(Self(Muscle { region, stiffness, contraction, activation: number_curve(activation)? }))
+    }
+
+    fn __repr__(&self) -> String {
+        let Muscle { region, stiffness, contraction, .. } = &self.0;
+        format!("<muscle of {}: {stiffness:?} N/m, contracts by {contraction:?}>", region.describe())
     }
 }

@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use viscera::body::KeptVolumeNow;
 use viscera::dynamics::implicit::ImplicitReport;
 use viscera::dynamics::quasi_static::StaticReport;
 use viscera::world::{BodyObservables, InstrumentObservables, StepReport};
@@ -92,6 +93,21 @@ getters!(PyStepReport {
     removed_cells: usize = |of| of.removed_cells;
     /// What the solver did, in an implicit step; None in an explicit one.
     implicit: Option<PyImplicitReport> = |of| of.implicit.map(PyImplicitReport);
+});
+
+/// A volume that is kept exactly, as it is now.
+#[pyclass(frozen, name = "KeptVolume", module = "viscera")]
+pub(crate) struct PyKeptVolume(pub(crate) KeptVolumeNow);
+
+getters!(PyKeptVolume {
+    /// Its name.
+    name: &str = |of| &of.name;
+    /// What it is to be [m³].
+    wanted: f64 = |of| of.wanted;
+    /// (V − V0)/V0 now.
+    error: f64 = |of| of.error;
+    /// The pressure from inside that kept it in the last sub-step [Pa].
+    pressure: f64 = |of| of.pressure;
 });
 
 /// Numbers about a body, in double precision whatever the world computes in.

@@ -18,7 +18,7 @@ use crate::arrays::{Numbers, NumpyScalar, index_array, list_array, matrix_array,
 use crate::error::OrRaise;
 use crate::mesh::mesh_object;
 use crate::model::{BlockArrays, Blocks, choose};
-use crate::report::{PyBodyObservables, PyStaticReport};
+use crate::report::{PyBodyObservables, PyKeptVolume, PyStaticReport};
 use crate::view::{Of, view};
 use crate::world::{PyWorld, in_world};
 
@@ -276,6 +276,12 @@ impl PySimulatedBody {
     fn observe(&self, py: Python<'_>) -> PyResult<PyBodyObservables> {
         let mut world = self.compute(py)?;
         Ok(PyBodyObservables(in_world!(&mut world.world, world => world.observe(self.id))))
+    }
+
+    /// The volumes that are kept exactly, in the order in which they were asked for.
+    #[getter]
+    fn kept_volumes(&self, py: Python<'_>) -> PyResult<Vec<PyKeptVolume>> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).kept_volumes().map(PyKeptVolume).collect()))
     }
 
     /// Removes cells by number; cells that are gone already are passed over. Gives how many went, dropped pieces included.

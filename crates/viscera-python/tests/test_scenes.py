@@ -97,6 +97,8 @@ def random_world(rng):
         viscera.NodallyIntegrated(viscera.StableNeoHookean(lame), stabilise=0.05),
         viscera.Corotational(linear, rotation="qr", tangent="exact"),
         viscera.StiffnessWarping(linear),
+        viscera.MassSpring(linear),
+        viscera.ShapeMemory(linear),
     ]
     mesh = viscera.TetMesh.box_grid([3, 2, 2], [0.12, 0.08, 0.08])
     other = mesh.with_nodes(mesh.nodes + [0.12, 0.0, 0.0])
@@ -160,6 +162,19 @@ def test_an_integrator_is_written_to_run_to_the_same_bits(scheme, beam, tmp_path
     world.steps(6)
     again.steps(6)
     assert np.array_equal(again.body("beam").positions, body.positions)
+
+
+@pytest.mark.parametrize("answers", [viscera.Precomputed, lambda law: viscera.Hybrid(law, dynamic=viscera.Region.cuboid([0, 0, 0.2], [1, 1, 1]))])
+def test_a_body_that_answers_at_once_is_written_to_run_to_the_same_bits(answers, tmp_path):
+    mesh = viscera.TetMesh.box_grid([2, 2, 4], [0.1, 0.1, 0.3])
+    world = viscera.World(gravity=[0, -1, 0], step=0.002)
+    model = answers(viscera.LinearElastic.from_young_poisson(10e3, 0.4))
+    pull = viscera.Load.force("z-max", [(0.0, [0, 0, 0]), (0.02, [0, 0, 0.5])])
+    body = world.add(viscera.Body(mesh, 1000.0, name="bar", model=model, fix="z-min", load=pull))
+    again, _, _ = viscera.Scene.load(world.write_scene(tmp_path, duration=0.1)).build()
+    world.steps(12)
+    again.steps(12)
+    assert np.array_equal(again.body("bar").positions, body.positions) and body.max_displacement > 1e-4
 
 
 def led(world):
