@@ -61,7 +61,8 @@ impl Table {
         &self.rows
     }
 
-    fn markdown(&self) -> String {
+    /// The table as Markdown.
+    pub fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
         let rule = format!("|{}\n", "---|".repeat(self.head.len()));
         self.rows.iter().fold(line(&self.head) + &rule, |text, row| text + &line(row))

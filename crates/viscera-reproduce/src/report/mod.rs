@@ -1,5 +1,6 @@
 //! What experiments found, as one page and as files.
 
+mod markdown;
 mod page;
 
 use std::fs;
@@ -14,6 +15,8 @@ use crate::{Experiment, Part, ReproduceError, Section};
 
 /// The page, in the folder of the report.
 const PAGE: &str = "index.html";
+/// Its text as Markdown, there and in the folder of each experiment.
+const MARKDOWN: &str = "README.md";
 
 /// All that was run, and on what.
 #[derive(Debug, Default)]
@@ -73,13 +76,15 @@ impl Report {
     /// # Errors
     /// [`ReproduceError`] where the folder cannot be written to.
     pub fn write(&self, folder: &Path) -> Result<PathBuf, ReproduceError> {
-        if let Some(Chapter { experiment, found: Ok(section), .. }) = self.chapters.last() {
-            write_files(section, &folder.join(experiment.name))?;
-        }
         make(folder)?;
+        if let Some(chapter @ Chapter { experiment, found: Ok(section), .. }) = self.chapters.last() {
+            let own = folder.join(experiment.name);
+            write_files(section, &own)?;
+            write(&own.join(MARKDOWN), markdown::chapter(chapter, section).as_bytes())?;
+        }
+        write(&folder.join(MARKDOWN), markdown::contents(self).as_bytes())?;
         let page = folder.join(PAGE);
-        let text = page::page(self)?;
-        write_atomically(&page, |out| out.write_all(text.as_bytes()))?;
+        write(&page, page::page(self)?.as_bytes())?;
         Ok(page)
     }
 }
@@ -88,22 +93,23 @@ fn make(folder: &Path) -> Result<(), ReproduceError> {
     fs::create_dir_all(folder).map_err(|error| ReproduceError::Folder { path: folder.into(), error })
 }
 
+fn write(path: &Path, bytes: &[u8]) -> Result<(), ReproduceError> {
+    Ok(write_atomically(path, |out| out.write_all(bytes))?)
+}
+
 /// Writes tables, plots and pictures, each as a file.
 fn write_files(section: &Section, folder: &Path) -> Result<(), ReproduceError> {
     make(folder)?;
-    let write = |name: String, bytes: &[u8]| -> Result<(), ReproduceError> {
-        Ok(write_atomically(folder.join(name), |out| out.write_all(bytes))?)
-    };
     for part in &section.parts {
         match part {
             Part::Text(_) => {}
-            Part::Table(_, table) => write(format!("{}.csv", table.name()), table.csv().as_bytes())?,
-            Part::Plot(plot) => write(format!("{}.svg", plot.name), plot.svg()?.as_bytes())?,
+            Part::Table(_, table) => write(&folder.join(format!("{}.csv", table.name())), table.csv().as_bytes())?,
+            Part::Plot(plot) => write(&folder.join(format!("{}.svg", plot.name)), plot.svg()?.as_bytes())?,
             Part::Pictures(pictures) => {
                 for picture in pictures {
                     let mut bytes = Vec::new();
                     picture.image.write_png(&mut bytes)?;
-                    write(format!("{}.png", picture.name), &bytes)?;
+                    write(&folder.join(format!("{}.png", picture.name)), &bytes)?;
                 }
             }
         }
