@@ -126,7 +126,8 @@ pub fn study(size: Size) -> Result<Extrapolations, ValidationError> {
             }
         }
     }
-    let rest = motion::at_rest_along_a_line(size, if size == Size::Full { 800 } else { 160 })?;
+    // Until shortly before the hand turns: there the last way is short, and the bound on how far a force goes on is met.
+    let rest = motion::at_rest_along_a_line(size, if size == Size::Full { 240 } else { 160 })?;
     let mut at_rest = Vec::new();
     for method in [Method::Hold, Method::Time, Method::Position, Method::Learnt] {
         let samples = Probed { felt: rest.clone(), offset: Vec::new(), step: 1 }.samples(16, method);

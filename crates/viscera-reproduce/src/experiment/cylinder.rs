@@ -121,9 +121,9 @@ fn compared(mut section: Section, linear: [f64; 3], changes: &[Changes]) -> Sect
     }
     for found in changes.iter().filter(|found| [RADIUS, STOUT].contains(&found.radius)) {
         let why = if found.radius == RADIUS {
-            "The paper states neither radius nor ν nor κ. Under loads of equal linear growth strain, and with it the true change of              volume, grows with the radius."
+            "The paper states neither radius nor ν nor κ. Under loads of equal linear growth strain, and with it the true change of volume, grows with the radius."
         } else {
-            "With a radius of a fifth of the height the published sizes come out, as far as the law bears the load: it gives way              where it is pressed together."
+            "With a radius of a fifth of the height the published sizes come out, as far as the law bears the load: it gives way where it is pressed together."
         };
         for (law, published, ours) in
             [("non-linear", PUBLISHED[1], found.free), ("volume kept", PUBLISHED[2], found.kept)]
