@@ -3,6 +3,9 @@
 //! `law_*` and `model_*` run over the registries by themselves: a new law or model is tested with no further line.
 //! `reference_*` compare with the cases in `tests/data/references`.
 
+mod body_deformation;
+mod body_placement;
+mod body_stress;
 mod corotational;
 mod corotational_motion;
 mod law_derivatives;
