@@ -79,6 +79,40 @@ fn numbering_nodes_cells_and_corners_otherwise_changes_no_force() {
     }
 }
 
+fn scale(mesh: &mut VolumeMesh, factor: f64) {
+    let nodes = match mesh {
+        VolumeMesh::Tet(mesh) => &mut mesh.nodes,
+        VolumeMesh::Hex(mesh) => &mut mesh.nodes,
+    };
+    nodes.iter_mut().for_each(|node| *node = *node * factor);
+}
+
+/// A body 2^k times as large has 4^k times the forces and products, here down to 1e-55 m and up to 1e53 m: no number in between leaves
+/// the range.
+#[test]
+fn bodies_of_any_size_have_the_forces_and_products_of_their_shape() {
+    for mesh in meshes() {
+        let mut random = Random::new(64);
+        let x = deformed(&mesh, random.deformation(0.4), Vector::ZERO, 0.005, &mut random);
+        let dx = random.vectors(x.len(), 0.01);
+        let usual = models_and_penalty::<f64>(&mesh);
+        for power in [-180, 180] {
+            let size = 2f64.powi(power);
+            let scaled = |places: &[Vector]| places.iter().map(|&place| place * size).collect::<Vec<_>>();
+            let back = |forces: Vec<Vector>| forces.into_iter().map(|force| force / size / size).collect::<Vec<_>>();
+            let mut other = mesh.clone();
+            scale(&mut other, size);
+            for (usual, named) in usual.iter().zip(models_and_penalty::<f64>(&other)) {
+                let what = format!("{}, times 2^{power}", named.name);
+                let (x_there, dx_there) = (scaled(&x), scaled(&dx));
+                assert_near(&back(named.model.forces(&x_there)), &usual.model.forces(&x), 1e-12, &what);
+                let products = back(named.model.product(&x_there, &dx_there));
+                assert_near(&products, &usual.model.product(&x, &dx), 1e-12, &what);
+            }
+        }
+    }
+}
+
 /// The same law in newtons and millimetres: every modulus is a millionth.
 fn in_millimetres(tissue: &Tissue) -> Tissue {
     struct Convert<'a>(&'a [f64]);
@@ -111,10 +145,7 @@ fn millimetres_instead_of_metres<T: Precision>() {
             VolumeMesh::Hex(_) => vec![],
         };
         let penalty_in_metres = penalty(&mesh, KEEP_VOLUME);
-        match &mut mesh {
-            VolumeMesh::Tet(mesh) => mesh.nodes.iter_mut().for_each(|node| *node = *node * 1e3),
-            VolumeMesh::Hex(mesh) => mesh.nodes.iter_mut().for_each(|node| *node = *node * 1e3),
-        }
+        scale(&mut mesh, 1e3);
         let millimetres: Vec<_> =
             examples().iter().flat_map(|(tissue, _)| models::<T>(&in_millimetres(tissue), &mesh)).collect();
         let y: Vec<_> = x.iter().map(|&x| x * thousand).collect();
