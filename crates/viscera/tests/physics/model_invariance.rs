@@ -8,7 +8,7 @@ use viscera::model::Precision;
 
 use crate::support::{
     Evaluate, KEEP_VOLUME, Named, Random, Vector, assert_close, assert_near, deformed, examples, hex_mesh, largest,
-    models, models_and_penalty, tet_mesh,
+    models, models_and_penalty, near, tet_mesh,
 };
 
 fn meshes() -> [VolumeMesh; 2] {
@@ -91,6 +91,7 @@ fn scale(mesh: &mut VolumeMesh, factor: f64) {
 /// the range.
 #[test]
 fn bodies_of_any_size_have_the_forces_and_products_of_their_shape() {
+    let mut others = Vec::new();
     for mesh in meshes() {
         let mut random = Random::new(64);
         let x = deformed(&mesh, random.deformation(0.4), Vector::ZERO, 0.005, &mut random);
@@ -102,15 +103,18 @@ fn bodies_of_any_size_have_the_forces_and_products_of_their_shape() {
             let back = |forces: Vec<Vector>| forces.into_iter().map(|force| force / size / size).collect::<Vec<_>>();
             let mut other = mesh.clone();
             scale(&mut other, size);
+            let (x_there, dx_there) = (scaled(&x), scaled(&dx));
             for (usual, named) in usual.iter().zip(models_and_penalty::<f64>(&other)) {
-                let what = format!("{}, times 2^{power}", named.name);
-                let (x_there, dx_there) = (scaled(&x), scaled(&dx));
-                assert_near(&back(named.model.forces(&x_there)), &usual.model.forces(&x), 1e-12, &what);
-                let products = back(named.model.product(&x_there, &dx_there));
-                assert_near(&products, &usual.model.product(&x, &dx), 1e-12, &what);
+                let (forces, product) = (usual.model.forces(&x), usual.model.product(&x, &dx));
+                let same = near(&back(named.model.forces(&x_there)), &forces, 1e-12, largest(&forces))
+                    && near(&back(named.model.product(&x_there, &dx_there)), &product, 1e-12, largest(&product));
+                if !same {
+                    others.push(format!("{}, times 2^{power}", named.name));
+                }
             }
         }
     }
+    assert!(others.is_empty(), "{others:#?}");
 }
 
 /// The same law in newtons and millimetres: every modulus is a millionth.

@@ -150,8 +150,9 @@ impl<T: Scalar> WarpedTets<T> {
         let left = here.map(|&edge| &self.edges[edge as usize]).filter(|edge| edge.cells > 0);
         let mut fit = Mat3::ZERO;
         left.for_each(|edge| fit += edge.rest.outer(edge.rest));
-        // a node without cells has nothing to fit
-        let inverse = fit.inverse();
+        // In units of its own size, as the determinant is its third power. A node without cells has nothing to fit.
+        let unit = T::ONE / fit.trace();
+        let inverse = (fit * unit).inverse() * unit;
         self.fits[node] = if inverse.is_finite() { inverse } else { Mat3::ZERO };
     }
 
