@@ -84,14 +84,14 @@ fn comparison(bodies: &[BodyResult]) -> Option<String> {
 fn instruments(summary: &Summary) -> String {
     let mut table = table(&["instrument", "kind", "peak force", "at", "most nodes held"]);
     for instrument in &summary.instruments {
-        let holds = instrument.held_nodes > 0;
-        let or_nothing = |text: String| if holds { text } else { "–".to_owned() };
+        let or_nothing = |is_there: bool, text: String| if is_there { text } else { "–".to_owned() };
+        let (felt, held) = (instrument.peak_force > 0.0, instrument.held_nodes > 0);
         table.add_row([
             instrument.name.clone(),
             instrument.kind.clone(),
-            or_nothing(with_prefix(instrument.peak_force, "N")),
-            or_nothing(format!("{:.2} s", instrument.time_of_peak_force)),
-            or_nothing(instrument.held_nodes.to_string()),
+            or_nothing(felt, with_prefix(instrument.peak_force, "N")),
+            or_nothing(felt, format!("{:.2} s", instrument.time_of_peak_force)),
+            or_nothing(held, instrument.held_nodes.to_string()),
         ]);
     }
     table_text(&table)
