@@ -8,8 +8,8 @@ const TURN = 16;
 /** How fast a tool goes, and how far it backs out, in radii of the scene (per second). */
 const SPEED = 7;
 const CLEARANCE = 0.22;
-/** Farther from where the hand left it [radii of the scene], a tool is no longer in hand. */
-const FAR = 0.6;
+/** Farther from where the hand left it [radii of the scene], a tool is no longer in hand. More than a hand goes before a picture tells of it. */
+const FAR = 3;
 /** Latencies that are kept for the numbers. */
 const KEPT = 200;
 

@@ -121,13 +121,16 @@ for (const engine of ['native', 'wasm'] as const) {
       // Tissue is red; the ground is grey. A good part of the picture's middle has to be tissue.
       const red = await page.evaluate(async () => {
         const canvas = document.querySelector<HTMLCanvasElement>('#view')!;
-        await new Promise((resolve) => requestAnimationFrame(resolve));
         const sheet = new OffscreenCanvas(64, 40).getContext('2d')!;
-        sheet.drawImage(await createImageBitmap(canvas), 0, 0, 64, 40);
-        const { data } = sheet.getImageData(0, 0, 64, 40);
         let count = 0;
-        for (let pixel = 0; pixel < data.length; pixel += 4)
-          if (data[pixel + 3]! > 128 && data[pixel]! > 1.5 * data[pixel + 1]!) count += 1;
+        // The canvas can be read in a frame in which something was drawn, and not every frame is one.
+        for (let frame = 0; frame < 600 && count === 0; frame++) {
+          await new Promise((resolve) => requestAnimationFrame(resolve));
+          sheet.drawImage(canvas, 0, 0, 64, 40);
+          const { data } = sheet.getImageData(0, 0, 64, 40);
+          for (let pixel = 0; pixel < data.length; pixel += 4)
+            if (data[pixel + 3]! > 128 && data[pixel]! > 1.5 * data[pixel + 1]!) count += 1;
+        }
         return count / (64 * 40);
       });
       expect(red).toBeGreaterThan(0.05);
