@@ -32,7 +32,7 @@ impl Combination {
 
     /// Those that the registry says work, and whose bodies move.
     pub(super) fn able() -> impl Iterator<Item = Self> {
-        Self::all().filter(|combination| combination.is_able() && combination.model.moves())
+        Self::all().filter(|combination| combination.is_able() && combination.model.info().moves)
     }
 
     /// Whether the registry says that it works.

@@ -40,6 +40,6 @@ fn build(combination: Combination, method: Method) -> Result<(), ValidationError
     let mut world = World::<f64>::new(WorldConfig { integrator: method.integrator, ..WorldConfig::default() })?;
     let body = combination.body(combination.cells.fill([1; 3], [EDGE; 3]), Stiffness::SOFT, 1000.0)?;
     // What rests at every step has to be held.
-    world.add(if combination.model.moves() { body } else { body.fix(Region::Named("z-min".into())) })?;
+    world.add(if combination.model.info().moves { body } else { body.fix(Region::Named("z-min".into())) })?;
     Ok(())
 }

@@ -106,9 +106,7 @@ impl<T: Scalar> NodalLoads<T> {
             }
         }
     }
-}
 
-impl<T: Scalar> NodalLoads<T> {
     /// Forces [N] of every load on the body as it is at `rest`, for a unit of each component of its curve: number, component, forces.
     pub(crate) fn unit_forces(&self, rest: &[Vec3<T>]) -> Vec<(usize, usize, Vec<Vec3<T>>)> {
         let mut all = Vec::new();

@@ -29,6 +29,7 @@ impl LinearTensorMass {
         purpose: "small displacements at the lowest cost; swells when it is bent or turned",
         hexahedra: false,
         laws: LAWS,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
@@ -49,10 +50,8 @@ impl GenericRecipe for LinearTensorMass {
     fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::LinearTensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
-        if !LAWS.contains(&self.tissue.kind()) {
-            let advice = "it computes small strains only; take the law `linear`, or the model `tensor-mass`";
-            return Err(ModelError::UnsupportedLaw { model, law: self.tissue.kind(), advice });
-        }
+        let advice = "it computes small strains only; take the law `linear`, or the model `tensor-mass`";
+        model.check_law(self.tissue.kind(), advice)?;
         let shape = RestShape::new(mesh, &self.tissue)?;
         Ok(Box::new(LinearModel::<T> {
             arms: shape.rest_arms(),

@@ -1,8 +1,8 @@
 //! The only list of force models.
 
 use super::{
-    Corotational, Hybrid, LinearTensorMass, MassSpring, ModelRecipe, NodallyIntegrated, Precomputed, ShapeMemory,
-    StiffnessWarping, TensorMass, TotalLagrangian,
+    Corotational, Hybrid, LinearTensorMass, MassSpring, ModelError, ModelRecipe, NodallyIntegrated, Precomputed,
+    ShapeMemory, StiffnessWarping, TensorMass, TotalLagrangian,
 };
 use crate::material::{LawKind, Tissue};
 
@@ -17,6 +17,8 @@ pub struct ModelInfo {
     pub hexahedra: bool,
     /// The laws that it computes.
     pub laws: &'static [LawKind],
+    /// Whether its bodies move in time; those of the others rest at the end of every step, and something has to hold them.
+    pub moves: bool,
     /// Why implicit steps and equilibria are not for it, and what to take instead; none where they are.
     pub no_implicit: Option<&'static str>,
     /// Why no cell can be cut out of it, and what to take instead; none where cells can.
@@ -66,6 +68,20 @@ fn whatever_the_cells(law: LawKind, _hexahedra: bool) -> Claims {
     Claims::of_law(law)
 }
 
+/// The claims of nets of points that know Young's modulus alone: an energy, and no law of matter.
+fn without_a_law(_law: LawKind, _hexahedra: bool) -> Claims {
+    Claims {
+        of_the_law: false,
+        objective: true,
+        force_free: true,
+        torque_free: true,
+        passes_patch_test: false,
+        conservative: true,
+        exact_products: true,
+        symmetric_products: true,
+    }
+}
+
 macro_rules! models {
     ($($recipe:ident: $claims:expr),+ $(,)?) => {
         /// Every force model, by kind.
@@ -80,11 +96,6 @@ macro_rules! models {
         impl ModelKind {
             /// Every model there is.
             pub const ALL: &'static [Self] = &[$(Self::$recipe),+];
-
-            /// Whether its bodies move in time; those of the others rest at the end of every step, and something has to hold them.
-            pub fn moves(self) -> bool {
-                self != Self::Precomputed
-            }
 
             /// What it is.
             pub fn info(self) -> ModelInfo {
@@ -117,11 +128,22 @@ models!(
     NodallyIntegrated: NodallyIntegrated::claims,
     Corotational: Corotational::claims,
     StiffnessWarping: StiffnessWarping::claims,
-    MassSpring: MassSpring::claims,
-    ShapeMemory: ShapeMemory::claims,
+    MassSpring: without_a_law,
+    ShapeMemory: without_a_law,
     Precomputed: whatever_the_cells,
     Hybrid: whatever_the_cells,
 );
+
+impl ModelKind {
+    /// Refuses a law that it does not compute, with what to take instead.
+    pub(super) fn check_law(self, law: LawKind, advice: &'static str) -> Result<(), ModelError> {
+        if self.info().laws.contains(&law) {
+            Ok(())
+        } else {
+            Err(ModelError::UnsupportedLaw { model: self, law, advice })
+        }
+    }
+}
 
 impl std::fmt::Display for ModelKind {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

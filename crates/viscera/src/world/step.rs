@@ -182,8 +182,7 @@ impl<T: Scalar> World<T> {
     /// The body that vibrates fastest.
     fn fastest(&mut self) -> Fastest {
         let mut fastest = Fastest { body: 0, squared_frequency: 0.0 };
-        let moving = self.bodies.iter_mut().enumerate().filter(|(_, body)| body.answer.is_none());
-        for (body, simulated) in moving {
+        for (body, simulated) in self.bodies.iter_mut().enumerate().filter(|(_, body)| body.moves()) {
             let squared_frequency = simulated.squared_frequency();
             if squared_frequency > fastest.squared_frequency {
                 fastest = Fastest { body, squared_frequency };
@@ -226,7 +225,7 @@ impl<T: Scalar> World<T> {
         let radius = self.motion.rods.iter().map(|rod| rod.start.radius).fold(0.0, f64::max);
         let fall = Vec3::from(self.config.gravity).norm() * self.config.step;
         let mut touches = false;
-        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+        for body in moving(&mut self.bodies) {
             let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * (way + radius);
             body.contacts.forget();
             touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach * expected);
@@ -239,7 +238,7 @@ impl<T: Scalar> World<T> {
         self.begin_attachments();
         let dt = self.config.step / f64::from(substeps);
         let gravity = Vec3::from(self.config.gravity).cast();
-        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+        for body in moving(&mut self.bodies) {
             explicit::begin(body, span.from, gravity, stages);
         }
         for substep in 1..=substeps {
@@ -247,13 +246,13 @@ impl<T: Scalar> World<T> {
             let share = |substep: u32| f64::from(substep) / f64::from(substeps);
             stages.run(Stage::Instruments, || self.move_tools(span, share(substep - 1), share(substep)));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-            for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+            for body in moving(&mut self.bodies) {
                 explicit::drift(body, dt, &drive, stages);
             }
             self.hold_together(dt, Aim::Place);
             self.restrain(stages, |body| body.restore_places(dt));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-            for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+            for body in moving(&mut self.bodies) {
                 explicit::kick(body, dt, &drive, stages);
             }
             self.hold_together(dt, Aim::Velocity);
@@ -296,7 +295,17 @@ impl<T: Scalar> World<T> {
 /// of its neighbours any more.
 const THROWN: f64 = 1e6;
 
+/// The bodies that move in time: the others answer once at the end of the step.
+pub(super) fn moving<T: Scalar>(bodies: &mut [SimulatedBody<T>]) -> impl Iterator<Item = &mut SimulatedBody<T>> {
+    bodies.iter_mut().filter(|body| body.moves())
+}
+
 impl<T: Scalar> SimulatedBody<T> {
+    /// Whether it moves in time.
+    pub(super) fn moves(&self) -> bool {
+        self.answer.is_none()
+    }
+
     /// Speed of the fastest node [m/s].
     pub(super) fn fastest_node(&self) -> f64 {
         self.state.velocities.iter().map(|v| v.squared_norm().to_f64()).fold(0.0, f64::max).sqrt()

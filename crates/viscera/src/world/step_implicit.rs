@@ -1,4 +1,4 @@
-use super::step::{MOST_PARTS, Motion};
+use super::step::{MOST_PARTS, Motion, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
 use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Newton};
@@ -26,7 +26,7 @@ impl<T: Scalar> World<T> {
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let dt = self.config.step / f64::from(parts);
             let all = self.bodies.iter_mut().zip(&mut self.implicit).enumerate();
-            for (number, (body, memory)) in all.filter(|(_, (body, _))| body.answer.is_none()) {
+            for (number, (body, memory)) in all.filter(|(_, (body, _))| body.moves()) {
                 // A scheme over two steps knows steps of one length.
                 body.state.past.is_known &= parts == 1;
                 let own =
@@ -58,7 +58,7 @@ impl<T: Scalar> World<T> {
             return 1;
         }
         let mut near = false;
-        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+        for body in moving(&mut self.bodies) {
             let coast = body.fastest_node() * self.config.step + way;
             near |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, coast);
             // What is pushed pushes its neighbours: all of the surface may come to touch.

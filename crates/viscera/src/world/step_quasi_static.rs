@@ -1,4 +1,4 @@
-use super::step::Motion;
+use super::step::{Motion, moving};
 use super::{StepError, World};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::contact::ToolFrame;
@@ -27,7 +27,7 @@ impl<T: Scalar> World<T> {
         let drive = Drive { end: span.to, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
         let mut solver = Iterative::default();
         let mut report = ImplicitReport::NOTHING;
-        for body in self.bodies.iter_mut().filter(|body| body.answer.is_none()) {
+        for body in moving(&mut self.bodies) {
             if settings.small_strain {
                 body.state.positions.clone_from(&body.rest);
                 body.state.positions_changed();

@@ -1,4 +1,5 @@
 use super::{StepError, World};
+use crate::body::SimulatedBody;
 use crate::dynamics::{Drive, answer};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
@@ -8,7 +9,7 @@ impl<T: Scalar> World<T> {
     pub(super) fn respond_statically(&mut self, span: &Span) -> Result<(), StepError> {
         let gravity = Vec3::from(self.config.gravity).cast();
         self.bodies.iter_mut().for_each(|body| body.place_followers(span.to, gravity));
-        if self.bodies.iter().all(|body| body.answer.is_none()) {
+        if self.bodies.iter().all(SimulatedBody::moves) {
             return Ok(());
         }
         self.move_tools(span, 0.0, 1.0);

@@ -56,7 +56,7 @@ fn example(kind: ModelKind) -> Box<dyn ModelRecipe> {
 
 #[test]
 fn every_model_moves_as_with_block_jacobi() {
-    for &kind in ModelKind::ALL.iter().filter(|kind| kind.moves()) {
+    for &kind in ModelKind::ALL.iter().filter(|kind| kind.info().moves) {
         let tetrahedra = TetMesh::box_grid([3, 3, 9], [0.1, 0.1, 0.3]);
         let body = |mesh: VolumeMesh| Body::new(mesh, 1000.0).boxed_model(example(kind)).fix(root()).damping(1.0);
         assert_same(|| body(tetrahedra.clone().into()), linearised(), &[], &format!("{kind}"));

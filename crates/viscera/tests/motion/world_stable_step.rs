@@ -97,7 +97,7 @@ fn the_bound_is_above_the_fastest_mode_of_every_model() {
     let mesh: VolumeMesh = TetMesh::box_grid([2, 2, 4], [0.04, 0.05, 0.16]).into();
     let mut recipes: Vec<Box<dyn ModelRecipe>> = Vec::new();
     for tissue in every_law() {
-        let able = ModelKind::ALL.iter().filter(|kind| kind.moves() && kind.info().laws.contains(&tissue.kind()));
+        let able = ModelKind::ALL.iter().filter(|kind| kind.info().moves && kind.info().laws.contains(&tissue.kind()));
         recipes.extend(able.map(|kind| kind.recipe(tissue.clone())));
         if ModelKind::NodallyIntegrated.info().laws.contains(&tissue.kind()) {
             recipes.push(Box::new(NodallyIntegrated::new(tissue.clone()).stabilise(0.1)));

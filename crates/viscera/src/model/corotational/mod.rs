@@ -53,6 +53,7 @@ impl Corotational {
         purpose: "large rotations at the price of small strains; steady in large implicit steps, turns back when inverted",
         hexahedra: true,
         laws: LAWS,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
@@ -105,15 +106,9 @@ pub(super) fn has_fibres(tissue: &Tissue) -> bool {
     tissue.kind() == LawKind::TransverseLinear
 }
 
-/// Refuses laws that are not linear.
-pub(super) fn check_law(model: ModelKind, tissue: &Tissue) -> Result<(), ModelError> {
-    if LAWS.contains(&tissue.kind()) {
-        return Ok(());
-    }
-    let advice =
-        "it turns small strains; take the law `linear` or `transverse-linear`, or the model `total-lagrangian`";
-    Err(ModelError::UnsupportedLaw { model, law: tissue.kind(), advice })
-}
+/// What to take for other laws.
+pub(super) const OTHER_LAWS: &str =
+    "it turns small strains; take the law `linear` or `transverse-linear`, or the model `total-lagrangian`";
 
 impl GenericRecipe for Corotational {
     const KIND: ModelKind = ModelKind::Corotational;
@@ -123,7 +118,7 @@ impl GenericRecipe for Corotational {
     }
 
     fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
-        check_law(ModelKind::Corotational, &self.tissue)?;
+        Self::KIND.check_law(self.tissue.kind(), OTHER_LAWS)?;
         self.tissue.check_count(mesh.cell_count())?;
         match mesh {
             VolumeMesh::Tet(mesh) => Ok(Box::new(CorotationalTets::new(mesh, &self.tissue, self.formulation)?)),

@@ -9,7 +9,7 @@
 //! Source: Müller, Dorsey, McMillan, Jagnow, Cutler, *Stable real-time deformations* (2002), section 4.
 
 use super::hooke::Hooke;
-use super::{LAWS, check_law};
+use super::{LAWS, OTHER_LAWS};
 use crate::material::{LawKind, Tissue};
 use crate::math::rotation::polar;
 use crate::math::{Mat3, Scalar, Vec3};
@@ -35,6 +35,7 @@ impl StiffnessWarping {
         purpose: "for comparison only: rotations at the nodes, whose ghost forces push a bent body about",
         hexahedra: false,
         laws: LAWS,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
@@ -67,7 +68,7 @@ impl GenericRecipe for StiffnessWarping {
 
     fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::StiffnessWarping;
-        check_law(model, &self.tissue)?;
+        model.check_law(self.tissue.kind(), OTHER_LAWS)?;
         self.tissue.check_count(mesh.cell_count())?;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
         Ok(Box::new(WarpedTets::new(mesh, &self.tissue)?))

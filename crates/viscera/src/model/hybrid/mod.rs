@@ -57,6 +57,7 @@ impl Hybrid {
         purpose: "one region moves and can be cut, the rest is linear, pre-computed, and follows; tools act on the region",
         hexahedra: true,
         laws: LawKind::ALL,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };

@@ -19,7 +19,6 @@ mod net;
 use self::net::{Net, NetBound};
 use super::frequency::FrequencyBound;
 use super::penalty_frequency::with_penalty;
-use super::registry::Claims;
 use super::{ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, recipe};
 use crate::material::{LawKind, Tissue};
 use crate::mesh::VolumeMesh;
@@ -36,22 +35,10 @@ impl MassSpring {
         purpose: "for comparison: springs along the edges, with Poisson's ratio 1/4 whatever the tissue's; stays folded",
         hexahedra: true,
         laws: &[LawKind::LinearElastic],
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
-
-    pub(crate) fn claims(_law: LawKind, _hexahedra: bool) -> Claims {
-        Claims {
-            of_the_law: false,
-            objective: true,
-            force_free: true,
-            torque_free: true,
-            passes_patch_test: false,
-            conservative: true,
-            exact_products: true,
-            symmetric_products: true,
-        }
-    }
 
     /// A model of `tissue`, of which Young's modulus counts.
     pub fn new(tissue: Tissue) -> Self {
@@ -60,11 +47,8 @@ impl MassSpring {
 
     fn check(&self, mesh: &VolumeMesh) -> Result<(), ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
-        if MassSpring::INFO.laws.contains(&self.tissue.kind()) {
-            return Ok(());
-        }
         let advice = "springs know Young's modulus alone; take the law `linear`, or the model `total-lagrangian`";
-        Err(ModelError::UnsupportedLaw { model: ModelKind::MassSpring, law: self.tissue.kind(), advice })
+        Self::KIND.check_law(self.tissue.kind(), advice)
     }
 }
 

@@ -52,6 +52,7 @@ impl NodallyIntegrated {
             LawKind::NeoHookean,
             LawKind::StableNeoHookean,
         ],
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };

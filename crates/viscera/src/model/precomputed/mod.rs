@@ -59,6 +59,7 @@ impl Precomputed {
                   cannot be cut",
         hexahedra: true,
         laws: LAWS,
+        moves: false,
         no_implicit: None,
         no_cutting: Some(
             "a cut changes every response; take the model `hybrid`, whose one part can be cut, or `linear-tensor-mass`",
@@ -77,9 +78,8 @@ impl Precomputed {
     }
 
     fn check(&self) -> Result<(), ModelError> {
-        let (model, law) = (ModelKind::Precomputed, self.tissue.kind());
         let advice = "its responses add up, as those of small strains do; take the law `linear`, or the model `hybrid`";
-        if LAWS.contains(&law) { Ok(()) } else { Err(ModelError::UnsupportedLaw { model, law, advice }) }
+        Self::KIND.check_law(self.tissue.kind(), advice)
     }
 }
 

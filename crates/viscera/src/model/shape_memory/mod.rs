@@ -36,7 +36,6 @@ use self::bound::MemoryBound;
 use self::neighbourhoods::Neighbourhoods;
 use super::frequency::FrequencyBound;
 use super::penalty_frequency::with_penalty;
-use super::registry::Claims;
 use super::{ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, recipe};
 use crate::material::{LawKind, Tissue};
 use crate::math::Scalar;
@@ -54,22 +53,10 @@ impl ShapeMemory {
         purpose: "discrete: nodes return to their place among their neighbours, where springs stay folded; no law of matter",
         hexahedra: true,
         laws: &[LawKind::LinearElastic],
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
-
-    pub(crate) fn claims(_law: LawKind, _hexahedra: bool) -> Claims {
-        Claims {
-            of_the_law: false,
-            objective: true,
-            force_free: true,
-            torque_free: true,
-            passes_patch_test: false,
-            conservative: true,
-            exact_products: true,
-            symmetric_products: true,
-        }
-    }
 
     /// A model of `tissue`, of which Young's modulus counts.
     pub fn new(tissue: Tissue) -> Self {
@@ -78,11 +65,8 @@ impl ShapeMemory {
 
     fn neighbourhoods<T: Scalar>(&self, mesh: &VolumeMesh) -> Result<Neighbourhoods<T>, ModelError> {
         self.tissue.check_count(mesh.cell_count())?;
-        if !ShapeMemory::INFO.laws.contains(&self.tissue.kind()) {
-            let advice =
-                "its actuators know Young's modulus alone; take the law `linear`, or the model `total-lagrangian`";
-            return Err(ModelError::UnsupportedLaw { model: ModelKind::ShapeMemory, law: self.tissue.kind(), advice });
-        }
+        let advice = "its actuators know Young's modulus alone; take the law `linear`, or the model `total-lagrangian`";
+        Self::KIND.check_law(self.tissue.kind(), advice)?;
         Neighbourhoods::new(mesh, &self.tissue)
     }
 }

@@ -50,6 +50,7 @@ impl TensorMass {
         purpose: "large displacements from tables on vertices, edges, triangles and tetrahedra; can be adaptive",
         hexahedra: false,
         laws: LAWS,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };
@@ -80,11 +81,9 @@ impl GenericRecipe for TensorMass {
     fn build<T: Precision>(&self, mesh: &VolumeMesh) -> Result<Box<dyn ForceModel<T>>, ModelError> {
         let model = ModelKind::TensorMass;
         let VolumeMesh::Tet(mesh) = mesh else { return Err(ModelError::UnsupportedCells { model }) };
-        if !LAWS.contains(&self.tissue.kind()) {
-            let advice = "it is made for St Venant-Kirchhoff laws; take `linear-tensor-mass` for linear ones and \
-                          `total-lagrangian` for the rest";
-            return Err(ModelError::UnsupportedLaw { model, law: self.tissue.kind(), advice });
-        }
+        let advice = "it is made for St Venant-Kirchhoff laws; take `linear-tensor-mass` for linear ones and \
+                      `total-lagrangian` for the rest";
+        model.check_law(self.tissue.kind(), advice)?;
         if let Some(value) = self.threshold.filter(|value| !(value.is_finite() && *value > 0.0)) {
             return Err(ModelError::OutOfRange { name: "adaptive", value, range: "positive [m]" });
         }

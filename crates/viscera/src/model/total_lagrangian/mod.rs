@@ -34,6 +34,7 @@ impl TotalLagrangian {
         purpose: "the fastest full model, for every law, on tetrahedra and hexahedra",
         hexahedra: true,
         laws: LawKind::ALL,
+        moves: true,
         no_implicit: None,
         no_cutting: None,
     };

@@ -40,7 +40,7 @@ fn pressure<R: Real>(c: &[R], determinant: R) -> R {
 
 /// Vλ'/det Dm². In this order: the square alone leaves the range at edges of 1e-51 m.
 #[inline(always)]
-fn twice_over_determinant<R: Real>(c: &[R]) -> R {
+fn over_squared_determinant<R: Real>(c: &[R]) -> R {
     c[7] * c[6] * c[6]
 }
 
@@ -63,7 +63,7 @@ impl TetKernel for StableNeoHookeanMetric {
         let stretched = *d * a0;
         let share = one / (stretched.contract(*d) + one);
         let (own, areas) = (columns_at_corners(&stretched), columns_at_corners(&d.cofactor()));
-        let (metrics, volume) = (at_corners(a0), twice_over_determinant(c));
+        let (metrics, volume) = (at_corners(a0), over_squared_determinant(c));
         let mut blocks = [a0; 4];
         for corner in 0..4 {
             blocks[corner] = Sym3::square(own[corner]) * (c[8] * share.squared()).double()
@@ -100,7 +100,7 @@ impl TetKernel for StableNeoHookeanMetric {
         let share = one / (a0.contract(d.gram()) + one);
         let stretched = *d * a0;
         let d_shape = (c[8] * share.squared() * stretched.contract(*dd)).double();
-        let d_pressure = twice_over_determinant(c) * cofactor.contract(*dd);
+        let d_pressure = over_squared_determinant(c) * cofactor.contract(*dd);
         *dd * (a0 * (c[8] * (one - share)))
             + stretched * d_shape
             + cofactor * d_pressure
