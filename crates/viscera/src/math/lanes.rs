@@ -1,3 +1,4 @@
+use std::cell::Cell;
 use std::cmp::PartialOrd;
 use std::fmt::{Display, LowerExp};
 use std::sync::OnceLock;
@@ -206,10 +207,26 @@ fn scatter_add_four_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], ro
     scatter_add_four([x, y, z, SimdBase::splat(simd, 0.0)], &nodes[..4], simd, rows);
 }
 
-/// The best instruction set of the processor that the program runs on, found once.
+thread_local! {
+    static ASKED: Cell<Option<Level>> = const { Cell::new(None) };
+}
+
+/// The instruction set of the kernels: the best that the processor has on which the program runs, found once.
 pub fn dispatch_level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
-    *LEVEL.get_or_init(Level::new)
+    ASKED.get().unwrap_or_else(|| *LEVEL.get_or_init(Level::new))
+}
+
+/// Does `work` with the kernels of another instruction set, on this thread alone, to hold them against each other.
+pub fn with_level<R>(level: Level, work: impl FnOnce() -> R) -> R {
+    struct PutBack(Option<Level>);
+    impl Drop for PutBack {
+        fn drop(&mut self) {
+            ASKED.set(self.0);
+        }
+    }
+    let _put_back = PutBack(ASKED.replace(Some(level)));
+    work()
 }
 
 /// The instruction set that every processor of the target has, for kernels that are not worth compiling for each set there is:

@@ -10,7 +10,7 @@ mod vec3;
 
 pub use dual::Dual;
 pub(crate) use lanes::baseline;
-pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level};
+pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level, with_level};
 pub use mat3::Mat3;
 pub use real::Real;
 pub use sym3::Sym3;

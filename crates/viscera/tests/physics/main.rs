@@ -19,6 +19,7 @@ mod model_balance;
 mod model_equality;
 mod model_gradient;
 mod model_invariance;
+mod model_lanes;
 mod model_refusal;
 mod model_removal;
 mod reference_compressible;
