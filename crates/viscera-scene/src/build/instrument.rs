@@ -56,6 +56,9 @@ pub(super) fn add<T: Scalar>(
         WorldError::Instrument(InstrumentError::OutOfRange { name, value, range, .. }) => {
             key(site, name).error(format!("`{name}` is {value}, and must be {range}"), "")
         }
+        WorldError::NothingToCut { kind, advice } => {
+            site.key("kind").error(format!("no body here can lose cells to a {kind}"), advice)
+        }
         WorldError::ToolsNeedMotion => site.error(
             "the integrator `quasi-static` knows no tools with rigid parts or a bounded grip",
             "take another integrator, or a grasper with neither jaws nor shaft nor `grip`",

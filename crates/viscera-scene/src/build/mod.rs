@@ -15,12 +15,11 @@ mod site;
 
 use indexmap::IndexMap;
 use viscera::math::Scalar;
-use viscera::mesh::VolumeMesh;
 use viscera::model::Precision;
 use viscera::world::{AttachmentId, BodyId, InstrumentId, World, WorldConfig, WorldError};
 
 use crate::error::SceneErrors;
-use crate::file::{InstrumentFile, SceneFile};
+use crate::file::SceneFile;
 use crate::scene::Scene;
 pub use mesh::Meshes;
 pub use precompute::BodyResponses;
@@ -38,7 +37,7 @@ pub struct BuiltScene<T: Scalar> {
     pub attachments: IndexMap<String, Vec<AttachmentId>>,
     /// Instruments by name, in the order of the file.
     pub instruments: IndexMap<String, InstrumentId>,
-    /// What was found and repaired in mesh files, by the name of the body.
+    /// What was found and repaired in mesh files, and what tools cannot do, by the name of the body.
     pub notices: Vec<(String, String)>,
 }
 
@@ -119,21 +118,11 @@ impl Scene {
         let mut instruments = IndexMap::new();
         for (name, described) in &file.instrument {
             let site = root.key("instrument").key(name);
-            let burns = matches!(described, InstrumentFile::Cautery { .. }) && !bodies.is_empty();
-            let whole = |id: &BodyId| {
-                let model = world.body(*id).model();
-                model.info().no_cutting.map(|advice| (model, advice))
-            };
-            if burns && let Some((model, advice)) = bodies.values().map(whole).reduce(Option::and).flatten() {
-                let message = format!("a cautery burns cells away, and the model `{model}` cannot be cut");
-                return Err(site.key("kind").error(message, advice));
-            }
-            let can_cut = |id: &BodyId| matches!(world.body(*id).mesh(), VolumeMesh::Tet(_));
-            if burns && !bodies.values().any(can_cut) {
-                let message = "a cautery burns tetrahedra away, and all bodies are made of hexahedra";
-                return Err(site.key("kind").error(message, "make the body of tetrahedra, or leave the cautery out"));
-            }
             instruments.insert(name.clone(), instrument::add(&mut world, described, &site)?);
+        }
+        for (name, &id) in bodies.iter().filter(|_| !instruments.is_empty()) {
+            let limits = world.body(id).model().info().tool_limits;
+            notices.extend(limits.map(|limits| (name.clone(), limits.into())));
         }
         Ok(BuiltScene { file, world, bodies, attachments, instruments, notices })
     }

@@ -5,6 +5,7 @@ mod searing;
 
 use crate::body::{LoosePieces, NodeMotion, SimulatedBody};
 use crate::math::{Scalar, Vec3};
+use crate::mesh::VolumeMesh;
 
 impl<T: Scalar> SimulatedBody<T> {
     /// Removes cells, and with them what hangs on them: mass, stiffness, loads on their faces, nodes left without a cell,
@@ -18,6 +19,13 @@ impl<T: Scalar> SimulatedBody<T> {
             self.take_out(removable);
         }
         removable.clear();
+    }
+
+    /// Why no tool burns cells away, and what to take instead; none where one does.
+    pub(crate) fn no_burning(&self) -> Option<&'static str> {
+        let hexahedra =
+            matches!(self.mesh, VolumeMesh::Hex(_)).then_some("hexahedra do not burn; make a body of tetrahedra");
+        self.model.info().no_cutting.or(hexahedra)
     }
 
     /// Removes the cells in the list that are still there and can be cut away, and leaves just these in it.

@@ -94,6 +94,10 @@ impl<T: Scalar> Instrument<T> for Cautery {
         self.friction
     }
 
+    fn cuts(&self) -> bool {
+        true
+    }
+
     fn cut(&self, tool: &ToolUse, body: &mut SimulatedBody<T>, cells: &mut Vec<u32>) {
         let Some((burn, energy)) = self.burn(tool) else { return };
         let VolumeMesh::Tet(mesh) = &body.mesh else { return };

@@ -59,6 +59,10 @@ pub trait Instrument<T: Scalar>: std::fmt::Debug + Send + Sync {
     fn takes_hold_of(&self, _pose: &ToolPose, _place: Point) -> bool {
         false
     }
+    /// Whether it removes cells.
+    fn cuts(&self) -> bool {
+        false
+    }
     /// Lists cells of `body` that are to be removed after a step, in `cells`.
     fn cut(&self, _tool: &ToolUse, _body: &mut SimulatedBody<T>, _cells: &mut Vec<u32>) {}
     /// Whether its script has it at work at this time: jaws closed, current on.
@@ -99,6 +103,9 @@ impl<T: Scalar> Instrument<T> for Box<dyn Instrument<T>> {
     }
     fn takes_hold_of(&self, pose: &ToolPose, place: Point) -> bool {
         self.as_ref().takes_hold_of(pose, place)
+    }
+    fn cuts(&self) -> bool {
+        self.as_ref().cuts()
     }
     fn cut(&self, tool: &ToolUse, body: &mut SimulatedBody<T>, cells: &mut Vec<u32>) {
         self.as_ref().cut(tool, body, cells);

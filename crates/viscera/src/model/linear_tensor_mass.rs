@@ -32,6 +32,7 @@ impl LinearTensorMass {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     /// A model of `tissue`.

@@ -23,6 +23,8 @@ pub struct ModelInfo {
     pub no_implicit: Option<&'static str>,
     /// Why no cell can be cut out of it, and what to take instead; none where cells can.
     pub no_cutting: Option<&'static str>,
+    /// What tools do not do to its bodies; none where they do all they can.
+    pub tool_limits: Option<&'static str>,
 }
 
 /// What holds for a model of a law with its default settings; the conformance suites test all of it.

@@ -77,6 +77,14 @@ pub enum WorldError {
         /// Why, and what to do.
         advice: &'static str,
     },
+    /// An instrument that removes cells, where no body can lose any.
+    #[error("no body here can lose cells to a {kind}: {advice}")]
+    NothingToCut {
+        /// The kind of instrument.
+        kind: &'static str,
+        /// Why, and what to do.
+        advice: &'static str,
+    },
     /// What the energy–momentum scheme keeps, it keeps only if its equations are solved in full.
     #[error("the energy-momentum scheme keeps nothing when it is linearised: solve it in full, or take another scheme")]
     LinearisedEnergyMomentum,

@@ -29,8 +29,8 @@ impl<T: Scalar> World<T> {
     /// Adds an instrument.
     ///
     /// # Errors
-    /// [`WorldError::Instrument`] where its settings make no sense; [`WorldError::ToolsNeedMotion`] for one that touches or slips, in a
-    /// quasi-static world.
+    /// [`WorldError::Instrument`] where its settings make no sense; [`WorldError::NothingToCut`] for one that removes cells, where there are
+    /// bodies and none can lose any; [`WorldError::ToolsNeedMotion`] for one that touches or slips, in a quasi-static world.
     pub fn add_instrument(&mut self, instrument: impl Instrument<T> + 'static) -> Result<InstrumentId, WorldError> {
         instrument.check()?;
         self.check_tool(&instrument)?;
@@ -129,8 +129,13 @@ impl<T: Scalar> World<T> {
         tool.hand.map_or_else(|| self.instrument(id).is_active(self.time()), |_| tool.is_closed)
     }
 
-    /// Between equilibria nodes are held or free: nothing pushes them, and nothing slips.
     fn check_tool(&self, instrument: &dyn Instrument<T>) -> Result<(), WorldError> {
+        if instrument.cuts()
+            && let Some(advice) = self.bodies.iter().map(SimulatedBody::no_burning).reduce(Option::and).flatten()
+        {
+            return Err(WorldError::NothingToCut { kind: instrument.kind(), advice });
+        }
+        // Between equilibria nodes are held or free: nothing pushes them, and nothing slips.
         if !matches!(self.config.integrator, Integrator::QuasiStatic(_)) {
             return Ok(());
         }

@@ -56,6 +56,7 @@ impl Corotational {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     pub(crate) fn claims(law: LawKind, hexahedra: bool) -> Claims {

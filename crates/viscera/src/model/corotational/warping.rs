@@ -38,6 +38,7 @@ impl StiffnessWarping {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     pub(crate) fn claims(_law: LawKind, _hexahedra: bool) -> Claims {

@@ -60,6 +60,7 @@ impl Hybrid {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: Some("tools pass through its pre-computed part; let a larger region move"),
     };
 
     /// A model of `tissue`, all of which moves until [`Hybrid::dynamic`] says which part does.

@@ -38,6 +38,7 @@ impl MassSpring {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     /// A model of `tissue`, of which Young's modulus counts.

@@ -55,6 +55,7 @@ impl NodallyIntegrated {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     pub(crate) fn claims(law: LawKind, _hexahedra: bool) -> Claims {

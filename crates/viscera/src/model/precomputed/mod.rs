@@ -64,6 +64,7 @@ impl Precomputed {
         no_cutting: Some(
             "a cut changes every response; take the model `hybrid`, whose one part can be cut, or `linear-tensor-mass`",
         ),
+        tool_limits: Some("tools slide on it without friction, which an equilibrium does not know"),
     };
 
     /// A model of `tissue`, whose responses are computed when a body is made of it.

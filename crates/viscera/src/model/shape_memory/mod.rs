@@ -56,6 +56,7 @@ impl ShapeMemory {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     /// A model of `tissue`, of which Young's modulus counts.

@@ -53,6 +53,7 @@ impl TensorMass {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     /// A model of `tissue`.

@@ -37,6 +37,7 @@ impl TotalLagrangian {
         moves: true,
         no_implicit: None,
         no_cutting: None,
+        tool_limits: None,
     };
 
     /// A model of `tissue`.
