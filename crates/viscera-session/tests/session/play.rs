@@ -81,6 +81,42 @@ fn a_grasper_carries_what_it_closes_on() {
     assert!(!page.frame().instruments[0].holds);
 }
 
+/// Jaws hold with 10 N and no more: the bar, which takes 32 N for every time its length, slips through them when it is pulled further.
+#[test]
+fn tissue_slips_through_jaws_that_pull_too_much() {
+    let mut page = Page::open(BAR);
+    let place = |pull: f64| [0.02, 0.043, 0.115 + pull];
+    let grasper = page.add("grasper", place(0.0), [0.0, -1.0, 0.0]);
+    page.step(1);
+    page.lead(grasper, place(0.0), 1.0);
+    page.step(3);
+    assert!(page.frame().instruments[0].holds, "{:?}", page.notices());
+    let mut largest = 0.0f64;
+    for step in 1..=100 {
+        page.lead(grasper, place(0.0025 * f64::from(step)), 1.0);
+        page.step(1);
+        let [x, y, z] = page.frame().instruments[0].force;
+        largest = largest.max((x * x + y * y + z * z).sqrt());
+    }
+    assert!(largest > 8.0 && largest < 10.5, "{largest} N");
+    let farthest = page.frame().observables.as_ref().unwrap()[0].largest_displacement;
+    assert!(farthest < 0.12, "the bar was carried along {farthest} m of 0.25 m");
+}
+
+/// A hand that came and closed the jaws while the simulation made one step of it: they hold what they were led to.
+#[test]
+fn jaws_hold_where_a_hurried_hand_closed_them() {
+    let mut page = Page::open(BAR);
+    let (above, end) = ([0.02, 0.12, 0.115], [0.02, 0.043, 0.115]);
+    let grasper = page.add("grasper", above, [0.0, -1.0, 0.0]);
+    page.step(1);
+    page.lead(grasper, [0.02, 0.08, 0.115], 0.0);
+    page.lead(grasper, end, 0.0);
+    page.lead(grasper, end, 1.0);
+    page.step(3);
+    assert!(page.frame().instruments[0].holds, "{:?}", page.frame().instruments[0]);
+}
+
 /// Wherever a hand presses them on the liver, jaws take hold: those of the scene on its cells, and those that a hand brings in also on
 /// cells that are longer than the jaws.
 #[test]

@@ -26,7 +26,8 @@ pub struct ToolInput {
     pub pose: ToolPose,
     /// From 0 (jaws open, current off) to 1 (jaws closed, full current).
     pub trigger: f64,
-    /// How fast its tip goes there at most [m/s, > 0]; without bound it is there at the end of the next step, however far that is.
+    /// How fast its tip goes there at most [m/s, > 0]; without bound it is there at the end of the next step, however far that is. Where
+    /// there is a bound, the trigger is pulled only within reach of the pose.
     pub speed: f64,
 }
 
@@ -40,6 +41,13 @@ impl ToolInput {
     pub(crate) fn reached(&self, from: &ToolPose, time: f64) -> ToolPose {
         let (way, most) = ((self.pose.tip - from.tip).norm(), self.speed * time);
         if way > most { from.towards(&self.pose, most / way) } else { self.pose }
+    }
+
+    /// The trigger of a tool that is at `from` with `trigger`, and takes hold within `reach` [m]. It opens at once. It closes where the hand
+    /// has it: a hand's way and its pull come together where a simulation is late, and jaws that closed on the way held nothing.
+    pub(crate) fn pulled(&self, from: &ToolPose, trigger: f64, reach: f64) -> f64 {
+        let on_its_way = self.speed.is_finite() && (self.pose.tip - from.tip).norm() > reach;
+        if on_its_way { self.trigger.min(trigger) } else { self.trigger }
     }
 }
 

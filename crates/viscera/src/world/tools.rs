@@ -196,7 +196,8 @@ impl<T: Scalar> World<T> {
             let goal = match tool.hand {
                 Some(hand) => {
                     let pose = hand.reached(&tool.pose, span.to - span.from);
-                    ToolInput { pose: instrument.mount().guide(pose), ..hand }
+                    let trigger = hand.pulled(&tool.pose, tool.trigger, instrument.reach());
+                    ToolInput { pose: instrument.mount().guide(pose), trigger, ..hand }
                 }
                 None => ToolInput::new(
                     scripted_pose(instrument.as_ref(), span.to),

@@ -1,8 +1,11 @@
 //! Tools that a hand leads, and tools that come and go.
 
+use viscera::body::{Body, NodeMotion};
 use viscera::curve::Curve;
 use viscera::instrument::{Cautery, Grasper, InstrumentKind, Mount, Probe, ToolInput, ToolPose};
-use viscera::mesh::Region;
+use viscera::material::{StVenantKirchhoff, Tissue};
+use viscera::mesh::{HexMesh, Region};
+use viscera::model::TotalLagrangian;
 use viscera::world::{InstrumentId, World, WorldError};
 
 use super::support::*;
@@ -55,6 +58,32 @@ fn a_tool_goes_no_faster_than_its_hand_lets_it() {
     world.step().unwrap();
     world.step().unwrap();
     assert_eq!(world.tool(id).pose, pose);
+}
+
+/// A hand that came and pulled the trigger before the simulation made its next step: the jaws hold what is where they were led, and not
+/// what they passed. Opened on the way they let go at once.
+#[test]
+fn jaws_close_where_the_hand_has_them() {
+    let (mut world, body) = bar();
+    let id = world.add_instrument(Grasper { radius: 0.012, ..Grasper::default() }).unwrap();
+    let (above_the_middle, end) = (Vector::new(0.08, 0.045, 0.02), Vector::new(0.16, 0.045, 0.02));
+    let led = |tip: Vector, trigger: f64| ToolInput { speed: 4.0, ..input(tip, trigger) };
+    world.set_tool(id, led(above_the_middle, 0.0)).unwrap();
+    world.step().unwrap();
+    world.set_tool(id, led(end, 1.0)).unwrap();
+    let mut steps = 0;
+    while world.tool(id).held_nodes == 0 {
+        world.step().unwrap();
+        steps += 1;
+        assert!(steps < 8, "never closed");
+    }
+    assert_eq!(steps, 5, "80 mm at 20 mm a step, the last of them within reach");
+    let held = |node: usize| matches!(world.body(body).state().motions[node], NodeMotion::Held(_));
+    let nodes = world.body(body).mesh().nodes();
+    assert!((0..nodes.len()).filter(|&node| held(node)).all(|node| nodes[node].x > 0.15));
+    world.set_tool(id, led(above_the_middle, 0.0)).unwrap();
+    world.step().unwrap();
+    assert_eq!(world.tool(id).held_nodes, 0);
 }
 
 /// The trigger closes the jaws at one half, and opens them below.
@@ -114,6 +143,22 @@ fn tools_come_and_go() {
     world.replace_instrument(second, Probe::default()).unwrap();
     world.step().unwrap();
     assert_eq!(world.tool(second).held_nodes, 0);
+}
+
+/// What burns cells away is refused where no body can lose any, and taken where one can, or none is there yet.
+#[test]
+fn a_cautery_needs_something_to_burn() {
+    let mut world = world::<f64>([0.0; 3], 5e-3, EXPLICIT);
+    world.add_instrument(Cautery::default()).unwrap();
+    let hexahedra = Body::new(HexMesh::box_grid([2, 2, 2], [0.1, 0.1, 0.1]), 1000.0);
+    let tissue = Tissue::uniform(StVenantKirchhoff::from_young_poisson(10e3, 0.3).unwrap());
+    world.add(hexahedra.model(TotalLagrangian::new(tissue))).unwrap();
+    let refused = world.add_instrument(Cautery::default());
+    assert!(matches!(refused, Err(WorldError::NothingToCut { kind: "cautery", .. })), "{refused:?}");
+    let refused = world.replace_instrument(InstrumentId(0), Cautery::default());
+    assert!(refused.unwrap_err().to_string().contains("make a body of tetrahedra"));
+    world.add(block([2, 2, 2], [0.04, 0.04, 0.04], Vector::ZERO, 10e3)).unwrap();
+    world.add_instrument(Cautery::default()).unwrap();
 }
 
 #[test]
