@@ -26,6 +26,9 @@ const HASTE: f64 = 5e-4;
 /// after their hands where a simulation was only a little late, and jaws closed on the way.
 const SPEED: f64 = 10.0;
 
+/// What the jaws of a grasper hold at most [N]: about what the surgeon's hand pulls at an organ with.
+const GRIP: f64 = 10.0;
+
 /// What a hand asks of an instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hand {
@@ -198,6 +201,7 @@ fn instrument<T: Scalar>(world: &World<T>, kind: InstrumentKind, radius: f64, ha
             radius: (0.012 * size).max(coarseness(world)),
             jaws: Some(Jaws { length: 0.02 * size, radius: 1.5e-3 * size, ..Jaws::default() }),
             shaft: Some(shaft),
+            grip: GRIP * size * size,
             ..Grasper::default()
         }),
         InstrumentKind::Cautery => {
