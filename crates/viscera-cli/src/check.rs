@@ -37,7 +37,10 @@ fn warnings(file: &SceneFile, summary: &SceneSummary) -> Vec<String> {
         warnings.push("the scene has no body: nothing will move".to_owned());
     }
     let heavy = file.gravity.iter().any(|component| component.0 != 0.0);
-    let held = |body: &BodySummary| body.fixed.0 > 0 || body.prescribed > 0 || body.guided > 0;
+    let grown = |body: &BodySummary| {
+        !body.grown_to.is_empty() || summary.bodies.iter().any(|other| other.grown_to.contains(&body.name))
+    };
+    let held = |body: &BodySummary| body.fixed.0 > 0 || body.prescribed > 0 || body.guided > 0 || grown(body);
     for body in summary.bodies.iter().filter(|body| heavy && !held(body)) {
         warnings.push(format!("nothing holds body `{}`: it falls; `fix` a region of it", body.name));
     }

@@ -62,6 +62,8 @@ pub struct BodySummary {
     pub prescribed: usize,
     /// Nodes that move in a plane or along a line only.
     pub guided: usize,
+    /// Names of the bodies that it is grown to.
+    pub grown_to: Vec<String>,
     /// Loads.
     pub loads: usize,
     /// What was found and repaired in its mesh file.
@@ -140,6 +142,7 @@ impl<T: Scalar> BuiltScene<T> {
             fixed: (count(|motion| motion == NodeMotion::Fixed), fixed),
             prescribed: count(|motion| matches!(motion, NodeMotion::Prescribed(_))),
             guided: count(|motion| matches!(motion, NodeMotion::Guided(_))),
+            grown_to: described.attach.iter().map(|attach| attach.to.clone()).collect(),
             loads: described.load.len(),
             notices: notices.collect(),
         }
@@ -158,7 +161,7 @@ impl<T: Scalar> BuiltScene<T> {
             name: name.to_owned(),
             kind: instrument.kind().to_owned(),
             radius: instrument.reach(),
-            path: stretches.map(|pair| (pair[1].1 - pair[0].1).norm()).sum(),
+            path: stretches.fold(0.0, |way, pair| way + (pair[1].1 - pair[0].1).norm()),
             active,
         }
     }
@@ -220,6 +223,9 @@ impl fmt::Display for BodySummary {
         if self.guided > 0 {
             writeln!(out, "  slide   {} nodes", self.guided)?;
         }
+        if !self.grown_to.is_empty() {
+            writeln!(out, "  grown   to {}", self.grown_to.join(" and "))?;
+        }
         if self.loads > 0 {
             writeln!(out, "  loads   {}", self.loads)?;
         }
@@ -229,9 +235,10 @@ impl fmt::Display for BodySummary {
 
 impl fmt::Display for InstrumentSummary {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        let (radius, path) = (self.radius * 1e3, self.path * 1e2);
+        let radius = self.radius * 1e3;
+        let path = if self.path > 0.0 { format!("path {:.1} cm", self.path * 1e2) } else { "still".to_owned() };
         let when = self.active.map_or("for a hand".to_owned(), |(from, to)| format!("at work from {from} to {to} s"));
         writeln!(out, "\ninstrument {}", self.name)?;
-        writeln!(out, "  {} of radius {radius:.1} mm, path {path:.1} cm, {when}", self.kind)
+        writeln!(out, "  {} of radius {radius:.1} mm, {path}, {when}", self.kind)
     }
 }

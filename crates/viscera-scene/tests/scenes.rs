@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use viscera::body::{NodeMotion, SimulatedBody};
+use viscera::instrument::{ToolInput, ToolPose};
 use viscera::math::Vec3;
 use viscera::mesh::{Region, TetMesh, VolumeMesh};
 use viscera::world::{BodyObservables, InstrumentObservables};
@@ -397,4 +398,50 @@ fn the_precomputed_lobe_of_a_hybrid_liver_carries_the_pull_until_the_other_is_bu
     assert!(gone.into_iter().all(|(corners, _)| moves(corners)));
     let following = body.state().motions.iter().filter(|motion| **motion == NodeMotion::Following).count();
     assert!(following > 300, "{following} nodes follow");
+}
+
+/// Pulled at its fundus, the gallbladder takes the liver along: at rest the liver holds it with what the jaws pull and what it weighs, and
+/// what is tied moves as one. Cut off its bed, it is held by the jaws alone.
+#[test]
+fn the_gallbladder_hangs_on_its_liver() {
+    let mut built = scene("gallbladder.toml", &[("body.liver.mesh.edge", "24 mm"), ("body.liver.damping", "20")])
+        .build::<f64>()
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let (liver, gallbladder) = (built.bodies["liver"], built.bodies["gallbladder"]);
+    let (tie, grasper) = (built.attachments["gallbladder"][0], built.instruments["grasper"]);
+    let world = &mut built.world;
+    let fundus = |world: &viscera::world::World<f64>| {
+        let places = world.body(gallbladder).positions();
+        places.iter().copied().max_by(|a, b| a.z.total_cmp(&b.z)).expect("there are nodes")
+    };
+    let direction = Vec3::new(0.0, 0.2, -1.0);
+    let lead = |world: &mut viscera::world::World<f64>, tip: Vec3<f64>, trigger: f64, steps: usize| {
+        let pose = ToolPose { tip, direction, roll: 0.0 };
+        world.set_tool(grasper, ToolInput { speed: 0.5, ..ToolInput::new(pose, trigger) }).unwrap();
+        for _ in 0..steps {
+            world.step().unwrap();
+        }
+    };
+    lead(world, fundus(world) + Vec3::new(0.0, 0.0, 0.03), 0.0, 60);
+    lead(world, fundus(world), 0.0, 20);
+    let (place, bed) = (fundus(world), world.body(liver).max_displacement());
+    lead(world, place, 1.0, 5);
+    assert!(world.tool(grasper).held_nodes > 0);
+    lead(world, place + Vec3::new(0.0, -0.02, 0.01), 1.0, 200);
+    let weight = Vec3::new(0.0, -1.0, 0.0) * world.observe(gallbladder).mass;
+    let (held, pulled) = (world.attachment_force(tie), world.tool(grasper).force());
+    assert!(pulled.norm() > 0.3, "{pulled:?}");
+    let rest = held + pulled + weight;
+    assert!(rest.norm() < 0.02 * pulled.norm(), "{held:?} {pulled:?} {weight:?}");
+    assert!(world.body(liver).max_displacement() > bed + 1e-3);
+
+    let cells: Vec<u32> = (0..tetrahedra(world.body(gallbladder)).cells.len() as u32).collect();
+    let above = |&cell: &u32| {
+        let body = world.body(gallbladder);
+        tetrahedra(body).cells[cell as usize].iter().any(|&node| body.mesh().nodes()[node as usize].z < 0.05)
+    };
+    let bed_of_it: Vec<u32> = cells.iter().copied().filter(above).collect();
+    world.remove_cells(gallbladder, &bed_of_it).unwrap();
+    lead(world, place + Vec3::new(0.0, -0.02, 0.01), 1.0, 100);
+    assert_eq!(world.attachment_force(tie), Vec3::ZERO);
 }

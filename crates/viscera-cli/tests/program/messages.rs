@@ -186,6 +186,7 @@ fn every_built_in_scene_is_listed_in_one_line_and_can_be_copied() {
             "breathing-trunk",
             "cylinder-bend",
             "fibre-tubes",
+            "gallbladder",
             "liver-adaptive",
             "liver-hybrid",
             "liver-inversion",
