@@ -17,6 +17,8 @@ pub enum Stage {
     KickAndDrift,
     /// Volumes that are kept exactly, and rigid parts.
     Constraints,
+    /// Impulses that hold together bodies that are grown to each other.
+    Attachments,
     /// An implicit step of a body; of its own, the vectors of Newton's method.
     Newton,
     /// What a model computes once for all products of a linear solve.

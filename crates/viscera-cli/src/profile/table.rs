@@ -88,6 +88,7 @@ pub(super) fn name(cost: Cost) -> String {
             Stage::Loads => "gravity and loads".into(),
             Stage::KickAndDrift => "kick and drift".into(),
             Stage::Constraints => "constraints".into(),
+            Stage::Attachments => "attachments".into(),
             Stage::Newton => "vectors of the step".into(),
             Stage::Linearisation => "linearisation".into(),
             Stage::Preconditioner => "preconditioner".into(),

@@ -10,6 +10,7 @@ use crate::body::{BodyError, SimulatedBody};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{Point, Region};
 use crate::solver::Filter;
+use crate::stage::{Stage, Stages};
 
 /// The most sweeps over all ties.
 const SWEEPS: u32 = 60;
@@ -122,10 +123,10 @@ impl<T: Scalar> World<T> {
     }
 
     /// Impulses that hold together what is attached, in a sub-step of `dt` [s].
-    pub(super) fn hold_together(&mut self, dt: f64, aim: Aim) {
+    pub(super) fn hold_together(&mut self, dt: f64, aim: Aim, stages: Stages) {
         for ties in &mut self.attachments {
             let Ok([own, other]) = self.bodies.get_disjoint_mut([ties.body, ties.to]) else { continue };
-            ties.impulse += ties_impulse(&ties.ties, own, other, dt, aim);
+            stages.run(Stage::Attachments, || ties.impulse += ties_impulse(&ties.ties, own, other, dt, aim));
         }
     }
 }

@@ -249,13 +249,13 @@ impl<T: Scalar> World<T> {
             for body in moving(&mut self.bodies) {
                 explicit::drift(body, dt, &drive, stages);
             }
-            self.hold_together(dt, Aim::Place);
+            self.hold_together(dt, Aim::Place, stages);
             self.restrain(stages, |body| body.restore_places(dt));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             for body in moving(&mut self.bodies) {
                 explicit::kick(body, dt, &drive, stages);
             }
-            self.hold_together(dt, Aim::Velocity);
+            self.hold_together(dt, Aim::Velocity, stages);
             self.restrain(stages, |body| body.restore_velocities(dt));
         }
     }
