@@ -56,7 +56,8 @@ impl Session {
         let mut recording = Recording::new(title, play.origin.name.clone(), text, play.file.step.0);
         recording.files = play.files_in_memory();
         recording.tools = play.tools.clone();
-        let untouched = play.world.steps() == 0 && play.tools.iter().all(|tool| tool.scripted);
+        // A tool that was taken away stays scripted, and the scene would bring it back.
+        let untouched = play.world.steps() == 0 && play.tools.iter().all(|tool| tool.scripted && !tool.removed);
         recording.state = (!untouched).then(|| Bytes(play.world.snapshot()));
         self.recorder = Some(Recorder { recording });
     }

@@ -2,7 +2,7 @@ use viscera_session::library;
 use viscera_session::message::{Bytes, Command, FrameMessage, RunState};
 use viscera_session::recording::{Recording, processor};
 
-use crate::support::{BAR, Page};
+use crate::support::{BAR, Page, light_bar};
 
 /// A minute of a user's work, in half a second: lifts the end of the bar, softens it on the way, cuts it.
 fn work(page: &mut Page) {
@@ -70,6 +70,30 @@ fn a_recording_may_begin_in_the_middle() {
     let mut other = Page::open(BAR);
     assert_eq!(play(&mut other, bytes), ["replayed 30 steps to the same bits"]);
     assert_eq!(other.positions(0), places);
+}
+
+/// A tool of the scene that was taken away before the recording began does not come back and press on the tissue.
+#[test]
+fn a_recording_remembers_that_a_tool_was_taken_away_before_it() {
+    let rod = r#"
+[instrument.rod]
+kind = "probe"
+path = [["0 s", [0.02, 0.06, 0.1]], ["0.2 s", [0.02, 0.02, 0.1]]]
+"#;
+    let scene = light_bar() + rod;
+    let mut page = Page::open(&scene);
+    page.say(Command::RemoveInstrument { instrument: 0 });
+    page.say(Command::StartRecording {});
+    page.step(30);
+    let places = page.positions(0);
+    page.say(Command::StopRecording {});
+    let bytes = page.file();
+    let mut other = Page::open(&scene);
+    other.step(30);
+    assert_ne!(other.positions(0), places, "the rod presses where it is left");
+    assert_eq!(play(&mut other, bytes), ["replayed 30 steps to the same bits"]);
+    assert_eq!(other.positions(0), places);
+    assert_eq!(other.scene().instruments.len(), 0);
 }
 
 /// A hand that meddles with a replay is refused; what departs is told with its step.

@@ -18,6 +18,11 @@ model = { kind = "total-lagrangian" }
 fix = "z-min"
 "#;
 
+/// The same with so little gravity that it stays under the tools: its end sags by a millimetre.
+pub(crate) fn light_bar() -> String {
+    BAR.replace("[body.bar]", "gravity = [0, -0.1, 0]\n\n[body.bar]")
+}
+
 /// A page without a picture.
 pub(crate) struct Page {
     pub(crate) session: Session,
