@@ -2,17 +2,17 @@ import { spawn, type ChildProcess } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { once } from 'node:events';
 import { PROGRAM_PORT } from '../../playwright.config';
+import { newest } from './newest';
 
-/** The program that was built, wherever cargo put it. */
+/** The program that VISCERA names, or else the one that cargo built last, with or without optimisation. */
 function programFile(): string {
-  const target = process.env['CARGO_TARGET_DIR'] ?? '../target';
   const named = process.env['VISCERA'];
-  const found = [named, `${target}/release/viscera`, `${target}/debug/viscera`].find(
-    (file) => file !== undefined && existsSync(file),
-  );
-  if (!found)
+  if (named !== undefined && existsSync(named)) return named;
+  const target = process.env['CARGO_TARGET_DIR'] ?? '../target';
+  const built = newest([`${target}/release/viscera`, `${target}/debug/viscera`]);
+  if (built === undefined)
     throw new Error('These tests need the program: run `cargo build -p viscera-cli`, or name it in VISCERA.');
-  return found;
+  return built;
 }
 
 /** `viscera serve`, started and ended by a test. */
