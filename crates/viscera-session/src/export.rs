@@ -13,31 +13,41 @@ use crate::message::Observables;
 /// How many rows of observables are kept: ten minutes at twenty a second.
 const ROWS: usize = 12_000;
 
-/// Observables over time, the last ones.
+/// What was observed over time, the last of it.
 #[derive(Default)]
 pub(crate) struct History {
-    rows: VecDeque<(f64, Vec<Observables>)>,
+    rows: VecDeque<Row>,
+}
+
+/// What was observed at one time.
+pub(crate) struct Row {
+    /// When [s].
+    pub(crate) time: f64,
+    /// Of each body; ghosts come and go, and are no part of it.
+    pub(crate) bodies: Vec<Observables>,
+    /// Of the tissue on each tool that there was until then, by its number [N].
+    pub(crate) forces: Vec<[f64; 3]>,
 }
 
 impl History {
-    pub(crate) fn push(&mut self, time: f64, of_bodies: Vec<Observables>) {
-        // Back to an earlier time, or another scene: what was later did not happen.
-        while self.rows.back().is_some_and(|(last, row)| *last >= time || row.len() != of_bodies.len()) {
+    pub(crate) fn push(&mut self, row: Row) {
+        // Back to an earlier time: what was later did not happen.
+        while self.rows.back().is_some_and(|last| last.time >= row.time) {
             self.rows.pop_back();
         }
         if self.rows.len() == ROWS {
             self.rows.pop_front();
         }
-        self.rows.push_back((time, of_bodies));
+        self.rows.push_back(row);
     }
 
     pub(crate) fn clear(&mut self) {
         self.rows.clear();
     }
 
-    /// As CSV: time, and of each body by its name what was observed.
-    pub(crate) fn csv(&self, names: &[String]) -> String {
-        const COLUMNS: [&str; 9] = [
+    /// As CSV: time, of each body by its name what was observed, and of each tool by its name what it felt.
+    pub(crate) fn csv(&self, bodies: &[String], tools: &[String]) -> String {
+        const OF_BODY: [&str; 9] = [
             "kinetic energy [J]",
             "elastic energy [J]",
             "gravity energy [J]",
@@ -48,10 +58,12 @@ impl History {
             "worst quality",
             "non-linear nodes",
         ];
-        let headings = names.iter().flat_map(|name| COLUMNS.map(|column| format!("{name}: {column}")));
-        let mut table = Table::new(std::iter::once("time [s]".to_owned()).chain(headings));
-        for (time, of_bodies) in &self.rows {
-            let numbers = of_bodies.iter().flat_map(|body| {
+        const OF_TOOL: [&str; 3] = ["force x [N]", "force y [N]", "force z [N]"];
+        let of_bodies = bodies.iter().flat_map(|name| OF_BODY.map(|column| format!("{name}: {column}")));
+        let of_tools = tools.iter().flat_map(|name| OF_TOOL.map(|column| format!("{name}: {column}")));
+        let mut table = Table::new(std::iter::once("time [s]".to_owned()).chain(of_bodies).chain(of_tools));
+        for Row { time, bodies, forces } in &self.rows {
+            let numbers = bodies.iter().flat_map(|body| {
                 let counts = [body.cells, body.inverted].map(|count| count as f64);
                 [
                     body.kinetic,
@@ -65,8 +77,10 @@ impl History {
                     body.nonlinear_nodes as f64,
                 ]
             });
-            let row: Vec<f64> = std::iter::once(*time).chain(numbers).collect();
-            // Rows of another number of bodies were dropped when the scene changed.
+            // A tool that came later felt nothing until then.
+            let forces = (0..tools.len()).flat_map(|tool| forces.get(tool).copied().unwrap_or_default());
+            let row: Vec<f64> = std::iter::once(*time).chain(numbers).chain(forces).collect();
+            // Rows of other bodies were dropped when the scene changed.
             let _ = table.push(&row);
         }
         csv_text(&table)

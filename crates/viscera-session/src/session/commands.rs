@@ -229,8 +229,9 @@ impl Session {
         let name = &self.play.origin.name;
         let (purpose, name, mime, bytes) = match what {
             Export::Observables => {
-                let names: Vec<String> = self.play.bodies().into_iter().map(body_name).collect();
-                let text = self.history.csv(&names);
+                let bodies: Vec<String> = self.play.file.body.keys().cloned().collect();
+                let tools: Vec<String> = self.play.tools.iter().map(|tool| tool.name.clone()).collect();
+                let text = self.history.csv(&bodies, &tools);
                 (Purpose::Observables, format!("{name}.csv"), "text/csv", text.into_bytes())
             }
             Export::State => {
@@ -282,10 +283,6 @@ fn hello(version: u32) -> Result<(), Box<Refusal>> {
     }
     let reason = format!("the page speaks version {version} of the protocol, and this program version {VERSION}");
     Err(refuse::with_help(reason, "load the page again from this program"))
-}
-
-fn body_name(body: crate::message::BodyEntry) -> String {
-    if body.ghost_of.is_some() { format!("{} (linear)", body.name) } else { body.name }
 }
 
 impl Play {

@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use super::Session;
-use crate::message::{Answer, BodyFrame, ColourRange, F32s, FrameMessage, Observables, SceneMessage, SnapshotEntry};
+use crate::export::Row;
+use crate::message::{
+    Answer, BodyFrame, ColourRange, F32s, FrameMessage, InstrumentFrame, Observables, SceneMessage, SnapshotEntry,
+};
 use crate::parameter;
 use crate::simulation::colour::Colouring;
 use crate::simulation::tools;
@@ -188,11 +191,12 @@ impl Session {
     }
 
     fn frame_message(&mut self) -> FrameMessage {
-        let observables = self.observe();
+        let present = self.play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
+        let frame = |(number, tool)| tools::frame(&self.play.world, number as u32, tool);
+        let instruments: Vec<InstrumentFrame> = present.map(frame).collect();
+        let observables = self.observe(&instruments);
         let by = self.colouring;
         let play = &self.play;
-        let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
-        let instruments = present.map(|(number, tool)| tools::frame(&play.world, number as u32, tool)).collect();
         let frame =
             |(world, body, surface): (&crate::simulation::AnyWorld, usize, &crate::simulation::Surface)| BodyFrame {
                 epoch: surface.epoch,
@@ -248,14 +252,17 @@ impl Session {
     }
 
     /// Numbers about each body, if it is time for some.
-    fn observe(&mut self) -> Option<Vec<Observables>> {
+    fn observe(&mut self, instruments: &[InstrumentFrame]) -> Option<Vec<Observables>> {
         let wall = self.clock.wall();
         if self.is_running() && wall - self.gallery.observed < BETWEEN_OBSERVATIONS {
             return None;
         }
         self.gallery.observed = wall;
         let of_bodies = self.play.observe();
-        self.history.push(self.play.world.time(), of_bodies.clone());
+        let mut forces = vec![[0.0; 3]; self.play.tools.len()];
+        instruments.iter().for_each(|tool| forces[tool.instrument as usize] = tool.force);
+        let bodies = of_bodies[..self.play.world.body_count()].to_vec();
+        self.history.push(Row { time: self.play.world.time(), bodies, forces });
         Some(of_bodies)
     }
 }

@@ -1,7 +1,7 @@
 use viscera_session::Seen;
 use viscera_session::message::{Answer, Command};
 
-use crate::support::{BAR, Page};
+use crate::support::{BAR, Page, light_bar};
 
 /// Pictures that were left out are not missed: the next one has every surface and the scene, if they changed meanwhile.
 #[test]
@@ -82,4 +82,38 @@ fn exports_hold_what_is_shown() {
     assert!(text.contains("young = 7000"), "{text}");
     page.say(Command::OpenText { text, name: None });
     assert_eq!(page.refusals(), [], "the scene that went home comes back");
+}
+
+/// What was measured stays measured while the linear model comes and goes, and what a tool felt stands beside it.
+#[test]
+fn measurements_outlast_the_ghost_and_hold_the_forces_on_tools() {
+    let mut page = Page::open(&light_bar());
+    for _ in 0..4 {
+        page.step(1);
+    }
+    page.say(Command::Ghost { on: true });
+    let probe = page.add("probe", [0.02, 0.05, 0.1], [0.0, -1.0, 0.0]);
+    let mut felt = 0.0;
+    for step in 1..=10 {
+        page.lead(probe, [0.02, 0.05 - 0.002 * f64::from(step), 0.1], 0.0);
+        page.step(1);
+        felt = page.frame().instruments[0].force[1];
+    }
+    assert!(felt > 0.0, "tissue that is dented pushes the probe up: {felt} N");
+    page.say(Command::Ghost { on: false });
+    page.say(Command::Export { what: viscera_session::message::Export::Observables });
+    let text = String::from_utf8(page.file()).unwrap();
+    let (heading, rows) = text.split_once('\n').unwrap();
+    let heading: Vec<&str> = heading.split(',').collect();
+    assert_eq!(heading[10..], ["probe 1: force x [N]", "probe 1: force y [N]", "probe 1: force z [N]"]);
+    let column = |place: usize| -> Vec<f64> {
+        rows.lines().map(|row| row.split(',').nth(place).unwrap().parse().unwrap()).collect()
+    };
+    // From the beginning: 4 steps before the ghost came, and 10 while it was there.
+    let times: Vec<f64> = (0..=14).map(|step| 0.01 * f64::from(step)).collect();
+    assert!(column(0).iter().zip(&times).all(|(kept, time)| (kept - time).abs() < 1e-9), "{:?}", column(0));
+    assert_eq!(column(0).len(), times.len());
+    let forces = column(11);
+    assert!(forces[..=4].iter().all(|&force| force == 0.0), "there was no probe yet: {forces:?}");
+    assert_eq!(forces.last(), Some(&felt));
 }
