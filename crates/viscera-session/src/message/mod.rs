@@ -5,6 +5,7 @@ mod bulk;
 mod command;
 mod frame;
 mod scene;
+mod size;
 
 pub use answer::{Answer, Excerpt, FileMessage, Level, Notice, Purpose, Refusal, Role, RoleMessage, Welcome};
 pub use bulk::{Bytes, F32s, U32s};
@@ -52,7 +53,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// Reads a command. Bytes are never trusted: lengths are held against what is there.
+    /// Reads a command. Bytes are never trusted: lengths are held against what is there, and values are counted before they are kept.
     ///
     /// # Errors
     /// A [`Refusal`] that says what is wrong, to be sent back.
@@ -64,6 +65,10 @@ impl Request {
             return Err(refuse("", None, format!("the message has {} bytes", bytes.len()), "at most 64 MiB are read"));
         }
         let help = "a message is one MessagePack map with the key `type`";
+        if size::has_more_values_than(MOST_VALUES, bytes) {
+            let reason = format!("the message cannot be read: it has more than {MOST_VALUES} values");
+            return Err(refuse("", None, reason, help));
+        }
         let mut rest = bytes;
         let value = rmpv::decode::read_value_with_max_depth(&mut rest, DEEPEST)
             .map_err(|error| refuse("", None, format!("the message cannot be read: {error}"), help))?;
@@ -101,6 +106,8 @@ impl Request {
     }
 }
 
+/// Keys, values and what is in lists, the map itself included: a command has half as many.
+const MOST_VALUES: u64 = 64;
 /// Maps within maps: a command has two.
 const DEEPEST: usize = 16;
 

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 use viscera::executor::Executor;
 use viscera_session::Session;
-use viscera_session::message::{Command, LONGEST_SHORT, Request};
+use viscera_session::message::{Command, LONGEST, LONGEST_SHORT, Request};
 
 use crate::support::{BAR, Page};
 
@@ -49,6 +49,41 @@ fn malformed_messages_are_refused_with_a_reason_and_the_scene_goes_on() {
     }
     page.step(2);
     assert_eq!(page.frame().steps, 4);
+}
+
+/// A value of one byte takes forty in memory: as many as the longest message holds would take gigabytes, and are counted first.
+#[test]
+fn a_message_full_of_small_values_is_refused_before_it_is_kept() {
+    let nils = vec![0xc0; LONGEST - 100];
+    let count = (nils.len() as u32).to_be_bytes();
+    let list = [&[0xdd][..], &count, &nils].concat();
+    let start = [&[0x82][..], &bytes(&"type".into()), &bytes(&"open-mesh".into()), &bytes(&"bytes".into())].concat();
+    for message in [[&start[..], &list].concat(), list] {
+        let refusal = Request::decode(&message).unwrap_err();
+        assert!(refusal.reason.contains("more than 64 values"), "{refusal:?}");
+    }
+}
+
+/// Whatever kind a value has, it counts once: what is in a text or in bytes does not, and what comes behind it does.
+#[test]
+fn values_of_every_kind_are_counted_once() {
+    use rmpv::Value;
+    // Each byte of it would be a list of four billion values.
+    let content = |length: usize| vec![0xdd_u8; length];
+    let texts = [3, 40, 300, 70_000].map(|length| Value::from("\u{7d}".repeat(length)));
+    let binaries = [3, 300, 70_000].map(|length| Value::Binary(content(length)));
+    let extensions = [1, 2, 4, 8, 16, 3, 300, 70_000].map(|length| Value::Ext(5, content(length)));
+    let whole = [5, 200, 60_000, 4_000_000_000, i64::MAX, -5, -100, -30_000, -2_000_000_000, i64::MIN].map(Value::from);
+    let others = [Value::Nil, true.into(), Value::F32(f32::MAX), Value::F64(f64::MAX), u64::MAX.into()];
+    for value in texts.into_iter().chain(binaries).chain(extensions).chain(whole).chain(others) {
+        // The map, its two keys, the type and the list are five. Of a type that may be long, so that nothing else is refused first.
+        let reason = |count: usize| {
+            let list = Value::Array(vec![value.clone(); count]);
+            Request::decode(&map(&[("type", "open-mesh".into()), ("list", list)])).unwrap_err().reason
+        };
+        let many = "more than 64 values";
+        assert!(!reason(59).contains(many) && reason(60).contains(many), "{value:?}: {}; {}", reason(59), reason(60));
+    }
 }
 
 #[test]
