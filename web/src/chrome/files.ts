@@ -1,5 +1,5 @@
 import { element } from '../dom';
-import type { ExportedFile } from '../engine/messages';
+import { LONGEST_COMMAND, type ExportedFile } from '../engine/messages';
 import type { SessionClient } from '../engine/session';
 import type { Notices } from './notices';
 
@@ -14,6 +14,10 @@ export function kindOf(name: string, meshFormats: readonly string[]): FileKind |
     ? 'mesh'
     : undefined;
 }
+
+/** The largest file that can be opened [bytes]: its name and the keys of the command need some room beside it. */
+const LARGEST = LONGEST_COMMAND - 2 ** 12;
+const MEBIBYTE = 2 ** 20;
 
 /** Files into the session, by drop or by choice, and files out of it. */
 export class Files {
@@ -56,7 +60,12 @@ export class Files {
   async take(file: File): Promise<void> {
     const formats = this.session.catalogue?.meshFormats ?? [];
     const kind = kindOf(file.name, formats);
-    if (kind === 'scene') {
+    if (kind && file.size > LARGEST) {
+      const larger = kind === 'mesh' ? ' A scene file may name larger ones: `viscera run` takes them.' : '';
+      const help = `At most ${LONGEST_COMMAND / MEBIBYTE} MiB can be opened here.${larger}`;
+      const size = `${Math.ceil(file.size / MEBIBYTE)} MiB`;
+      this.notices.show('error', `${file.name} is too large: it has ${size}.`, help);
+    } else if (kind === 'scene') {
       this.session.send({ type: 'open-text', text: await file.text(), name: file.name });
     } else if (kind === 'mesh' || kind === 'recording') {
       const bytes = new Uint8Array(await file.arrayBuffer());

@@ -1,6 +1,8 @@
 /** What is said between the page and a session; `docs/protocol.md` says what each key means. SI units throughout. */
 
 export const PROTOCOL_VERSION = 1;
+/** The longest command that a session takes [bytes]. */
+export const LONGEST_COMMAND = 64 * 2 ** 20;
 
 export type Vector = [x: number, y: number, z: number];
 export type ParameterValue = number | string | boolean | Vector;

@@ -102,6 +102,28 @@ test.describe('with a stand-in for the session', () => {
     await notice.getByRole('button', { name: 'Close this notice' }).click();
   });
 
+  test('a file that is too large is refused on the page, and nothing of it is sent', async () => {
+    const dataTransfer = await page.evaluateHandle(() => {
+      const carried = new DataTransfer();
+      carried.items.add(new File([new ArrayBuffer(65 * 2 ** 20)], 'huge.stl'));
+      return carried;
+    });
+    await page.dispatchEvent('#theatre', 'drop', { dataTransfer });
+    const notice = page.getByRole('alert').filter({ hasText: 'huge.stl is too large: it has 65 MiB.' });
+    await expect(notice).toContainText('At most 64 MiB');
+    await notice.getByRole('button', { name: 'Close this notice' }).click();
+    // One that came later is sent, and would have come behind it.
+    await page.evaluate(() => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File(['solid small'], 'small.stl'));
+      document
+        .querySelector('#theatre')!
+        .dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true }));
+    });
+    const meshes = () => session.heard.flatMap((said) => (said.type === 'open-mesh' ? [said.name] : []));
+    await expect.poll(meshes).toEqual(['small.stl']);
+  });
+
   test('keys move the chosen tool, close it and let it go', async () => {
     const tip = async () => (await state(page)).frame!.instruments[0]!.tip;
     const trigger = async () => (await state(page)).frame!.instruments[0]!.trigger;
