@@ -23,7 +23,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
         effect: Effect::Continues,
         form: Form::Choice(|_| free_choices(integrators())),
         get: |scene| Some(Value::Text(name_of(scene.integrator.kind))),
-        set: |scene, value| {
+        set: |scene, value, _| {
             let Some(kind) = text(value).and_then(named) else { return Vec::new() };
             // The settings of one integrator are refused by another.
             scene.integrator = IntegratorFile { kind, ..IntegratorFile::default() };
@@ -51,7 +51,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
             span: |_| (1e-3, 4e-2),
         },
         get: |scene| Some(Value::Number(scene.step.0)),
-        set: |scene, value| plain(value.number().map(|number| scene.step = Time(number))),
+        set: |scene, value, _| plain(value.number().map(|number| scene.step = Time(number))),
     },
     Definition {
         key: "gravity",
@@ -61,7 +61,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
         effect: Effect::Continues,
         form: Form::Vector,
         get: |scene| Some(Value::Vector(scene.gravity.map(|component| component.0))),
-        set: |scene, value| plain(vector(value).map(|vector| scene.gravity = vector.map(Acceleration))),
+        set: |scene, value, _| plain(vector(value).map(|vector| scene.gravity = vector.map(Acceleration))),
     },
     Definition {
         key: "precision",
@@ -79,7 +79,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
             vec![choice("single", "Single"), choice("double", "Double")]
         }),
         get: |scene| Some(Value::Text(name_of(scene.precision))),
-        set: |scene, value| plain(text(value).and_then(named::<Precision>).map(|chosen| scene.precision = chosen)),
+        set: |scene, value, _| plain(text(value).and_then(named::<Precision>).map(|chosen| scene.precision = chosen)),
     },
 ];
 
@@ -93,11 +93,9 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         effect: Effect::Continues,
         form: Form::Choice(model_choices),
         get: |body| Some(Value::Text(name_of(model_of(body)))),
-        set: |body, value| {
-            plain(text(value).and_then(named).map(|kind| {
-                let keep_volume = body.model.as_ref().and_then(|model| model.keep_volume);
-                body.model = Some(ModelFile { keep_volume, ..bare(kind) });
-            }))
+        set: |body, value, opened| {
+            let chosen = text(value).and_then(named).filter(|&kind| kind != model_of(body));
+            plain(chosen.map(|kind| body.model = Some(model(kind, body, opened))))
         },
     },
     Definition {
@@ -123,7 +121,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (default / 20.0, default * 20.0),
         },
         get: |body| body.law.young.map(|young| Value::Number(young.0)),
-        set: |body, value| plain(value.number().map(|number| body.law.young = Some(Pressure(number)))),
+        set: |body, value, _| plain(value.number().map(|number| body.law.young = Some(Pressure(number)))),
     },
     Definition {
         key: "law.poisson",
@@ -138,7 +136,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |_| (0.0, 0.49),
         },
         get: |body| body.law.poisson.map(Value::Number),
-        set: |body, value| plain(value.number().map(|number| body.law.poisson = Some(number))),
+        set: |body, value, _| plain(value.number().map(|number| body.law.poisson = Some(number))),
     },
     Definition {
         key: "law.lambda",
@@ -148,7 +146,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         effect: Effect::Continues,
         form: Form::Number { least: None, most: None, scale: Scale::Linear, span: |default| (0.0, 10.0 * default) },
         get: |body| body.law.lambda.map(|lambda| Value::Number(lambda.0)),
-        set: |body, value| plain(value.number().map(|number| body.law.lambda = Some(Pressure(number)))),
+        set: |body, value, _| plain(value.number().map(|number| body.law.lambda = Some(Pressure(number)))),
     },
     Definition {
         key: "law.mu",
@@ -163,7 +161,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (default / 20.0, default * 20.0),
         },
         get: |body| body.law.mu.map(|mu| Value::Number(mu.0)),
-        set: |body, value| plain(value.number().map(|number| body.law.mu = Some(Pressure(number)))),
+        set: |body, value, _| plain(value.number().map(|number| body.law.mu = Some(Pressure(number)))),
     },
     Definition {
         key: "law.fibre.direction",
@@ -173,7 +171,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         effect: Effect::Continues,
         form: Form::Vector,
         get: |body| direction_of(&body.law).map(Value::Vector),
-        set: |body, value| {
+        set: |body, value, _| {
             plain(
                 vector(value)
                     .and_then(|direction| fibre_of(&mut body.law).map(|fibre| fibre.direction = Some(direction))),
@@ -188,7 +186,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         effect: Effect::Continues,
         form: Form::Number { least: ABOVE_ZERO, most: None, scale: Scale::Logarithmic, span: |_| (0.2, 20.0) },
         get: |body| factor_of(&body.law).map(Value::Number),
-        set: |body, value| {
+        set: |body, value, _| {
             plain(value.number().and_then(|factor| {
                 fibre_of(&mut body.law).map(|fibre| (fibre.young, fibre.factor) = (None, Some(factor)))
             }))
@@ -209,7 +207,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         get: |body| {
             Some(Value::Number(body.model.as_ref().and_then(|model| model.keep_volume).map_or(0.0, |kappa| kappa.0)))
         },
-        set: |body, value| {
+        set: |body, value, _| {
             plain(value.number().map(|kappa| {
                 let kind = model_of(body);
                 body.model.get_or_insert_with(|| bare(kind)).keep_volume = (kappa > 0.0).then_some(Pressure(kappa));
@@ -229,7 +227,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (default / 20.0, default * 20.0),
         },
         get: |body| body.model.as_ref().and_then(|model| model.adaptive).map(|length| Value::Number(length.0)),
-        set: |body, value| {
+        set: |body, value, _| {
             plain(
                 value
                     .number()
@@ -250,7 +248,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (0.2 * default, 3.0 * default),
         },
         get: |body| Some(Value::Number(body.density.0)),
-        set: |body, value| plain(value.number().map(|number| body.density = Density(number))),
+        set: |body, value, _| plain(value.number().map(|number| body.density = Density(number))),
     },
     Definition {
         key: "damping",
@@ -265,7 +263,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (0.0, default.max(5.0) * 4.0),
         },
         get: |body| Some(Value::Number(body.damping.0)),
-        set: |body, value| plain(value.number().map(|number| body.damping = Rate(number))),
+        set: |body, value, _| plain(value.number().map(|number| body.damping = Rate(number))),
     },
     Definition {
         key: "stiffness-damping",
@@ -280,7 +278,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (0.0, default.max(0.01) * 5.0),
         },
         get: |body| Some(Value::Number(body.stiffness_damping.0)),
-        set: |body, value| plain(value.number().map(|number| body.stiffness_damping = Time(number))),
+        set: |body, value, _| plain(value.number().map(|number| body.stiffness_damping = Time(number))),
     },
     Definition {
         key: "mesh.edge",
@@ -295,14 +293,14 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
             span: |default| (0.6 * default, 2.0 * default),
         },
         get: |body| edge_of(&body.mesh).map(|edge| Value::Number(edge.0)),
-        set: |body, value| {
+        set: |body, value, _| {
             plain(value.number().and_then(|number| edge_mut(&mut body.mesh).map(|edge| *edge = Length(number))))
         },
     },
 ];
 
 /// Takes another law, and leaves out what it does not know.
-fn choose_law(body: &mut BodyFile, value: &Value) -> Vec<String> {
+fn choose_law(body: &mut BodyFile, value: &Value, opened: &BodyFile) -> Vec<String> {
     let Some(kind) = text(value).and_then(named::<LawName>) else { return Vec::new() };
     let mut notices = Vec::new();
     body.law.kind = kind;
@@ -316,14 +314,13 @@ fn choose_law(body: &mut BodyFile, value: &Value) -> Vec<String> {
             notices.push(format!("the law `{}` has no fibres: they are left out", name_of(kind)));
         }
     }
-    let model = model_of(body);
-    if !fits(model, body) {
+    let before = model_of(body);
+    if !fits(before, body) {
         let instead = default_model(body);
-        let keep_volume = body.model.as_ref().and_then(|model| model.keep_volume);
-        body.model = Some(ModelFile { keep_volume, ..bare(instead) });
+        body.model = Some(model(instead, body, opened));
         notices.push(format!(
             "the model `{}` does not compute the law `{}`: the model is `{}` now",
-            name_of(model),
+            name_of(before),
             name_of(kind),
             name_of(instead)
         ));
@@ -333,6 +330,17 @@ fn choose_law(body: &mut BodyFile, value: &Value) -> Vec<String> {
 
 fn model_of(body: &BodyFile) -> ModelName {
     body.model.as_ref().map_or_else(|| default_model(body), |model| model.kind)
+}
+
+/// Another model for a body, with the settings that the scene had for it when it was opened, or else its default ones.
+fn model(kind: ModelName, body: &BodyFile, opened: &BodyFile) -> ModelFile {
+    let keep_volume = body.model.as_ref().and_then(|model| model.keep_volume);
+    let of_scene = opened.model.clone().filter(|model| model.kind == kind);
+    let settings = of_scene.unwrap_or_else(|| bare(kind));
+    // Responses are of one tissue on one mesh; to others they are found again.
+    let same = (&body.law, &body.part, &body.mesh) == (&opened.law, &opened.part, &opened.mesh);
+    let responses = settings.responses.filter(|_| same);
+    ModelFile { keep_volume, responses, ..settings }
 }
 
 /// A model with its default settings.

@@ -22,8 +22,9 @@ pub(crate) struct Definition<S: 'static> {
     pub(crate) form: Form<S>,
     /// Its value; none where the scene has no place for it.
     pub(crate) get: fn(&S) -> Option<Value>,
-    /// Puts a value of the right form there, and tells what else that changed.
-    pub(crate) set: fn(&mut S, &Value) -> Vec<String>,
+    /// Puts a value of the right form there, and tells what else that changed. Knows the scene as it was opened, for what it said of a
+    /// choice that was left since.
+    pub(crate) set: fn(&mut S, &Value, &S) -> Vec<String>,
 }
 
 /// What values it takes.
@@ -65,20 +66,27 @@ pub(crate) fn parameters(file: &SceneFile, original: &SceneFile) -> Vec<Paramete
     of_bodies.chain(of_world).collect()
 }
 
-/// Puts a value into the file; gives what that does to the motion, and notices of what else it changed.
-pub(crate) fn set(file: &mut SceneFile, key: &str, value: &Value) -> Result<(Effect, Vec<String>), NotSet> {
+/// Puts a value into the file, which was `original` when it was opened; gives what that does to the motion, and notices of what else it
+/// changed.
+pub(crate) fn set(
+    file: &mut SceneFile,
+    original: &SceneFile,
+    key: &str,
+    value: &Value,
+) -> Result<(Effect, Vec<String>), NotSet> {
     let unknown = || NotSet {
         reason: format!("there is no parameter `{key}`"),
         help: "the scene lists its parameters with their keys".into(),
     };
     if let Some(definition) = OF_WORLD.iter().find(|definition| definition.key == key) {
-        return definition.put(file, value);
+        return definition.put(file, value, original);
     }
     // Names of bodies may have dots: the one that fits, not the first part.
     let of_body = |(name, body): (&String, &mut BodyFile)| {
         let rest = key.strip_prefix("body.")?.strip_prefix(name.as_str())?.strip_prefix('.')?;
         let definition = OF_BODY.iter().find(|definition| definition.key == rest)?;
-        Some(definition.put(body, value))
+        let before = original.body.get(name).cloned().unwrap_or_else(|| body.clone());
+        Some(definition.put(body, value, &before))
     };
     file.body.iter_mut().find_map(of_body).unwrap_or_else(|| Err(unknown()))
 }
@@ -117,7 +125,7 @@ impl<S> Definition<S> {
         })
     }
 
-    fn put(&self, file: &mut S, value: &Value) -> Result<(Effect, Vec<String>), NotSet> {
+    fn put(&self, file: &mut S, value: &Value, original: &S) -> Result<(Effect, Vec<String>), NotSet> {
         let refuse = |reason: String, help: &str| Err(NotSet { reason, help: help.into() });
         if (self.get)(file).is_none() {
             return refuse(format!("`{}` has no meaning in this scene as it is", self.title), "");
@@ -131,14 +139,14 @@ impl<S> Definition<S> {
                     (_, Some((bound, Bound::Excluded))) if *number >= *bound => format!("below {bound}{unit}"),
                     (_, Some((bound, Bound::Included))) if *number > *bound => format!("{bound}{unit} or less"),
                     _ if !number.is_finite() => "a finite number".into(),
-                    _ => return Ok((self.effect, (self.set)(file, value))),
+                    _ => return Ok((self.effect, (self.set)(file, value, original))),
                 };
                 refuse(format!("{} is {number}{unit}, and must be {wanted}", self.title), "")
             }
             (Form::Choice(choices), Value::Text(name)) => {
                 let choices = choices(file);
                 match choices.iter().find(|choice| choice.name == *name) {
-                    Some(choice) if choice.available => Ok((self.effect, (self.set)(file, value))),
+                    Some(choice) if choice.available => Ok((self.effect, (self.set)(file, value, original))),
                     Some(choice) => {
                         refuse(format!("`{name}` cannot be chosen now"), choice.reason.as_deref().unwrap_or_default())
                     }
@@ -150,7 +158,7 @@ impl<S> Definition<S> {
             }
             (Form::Vector, Value::Vector(components)) => {
                 if components.iter().all(|component| component.is_finite()) {
-                    Ok((self.effect, (self.set)(file, value)))
+                    Ok((self.effect, (self.set)(file, value, original)))
                 } else {
                     refuse(format!("{} is not finite", self.title), "give three finite numbers")
                 }

@@ -186,8 +186,10 @@ impl Session {
     /// Changes a parameter.
     pub(super) fn change(&mut self, key: &str, value: &Value) -> Result<(), Box<Refusal>> {
         let mut file = self.play.file.clone();
+        // A replay knows the scene as it was when the recording began.
+        let original = self.recorded_scene().unwrap_or(&self.play.original);
         let (effect, notices) =
-            parameter::set(&mut file, key, value).map_err(|not_set| refuse::parameter(key, not_set))?;
+            parameter::set(&mut file, original, key, value).map_err(|not_set| refuse::parameter(key, not_set))?;
         if effect == Effect::Restarts {
             self.check_size(key, value)?;
         }

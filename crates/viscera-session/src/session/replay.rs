@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use viscera::math::{Scalar, Vec3};
 use viscera::world::World;
+use viscera_scene::file::SceneFile;
 use viscera_scene::{Files, Scene};
 
 use super::Session;
@@ -19,6 +20,8 @@ const MOST_STEPS: u64 = 360_000;
 /// A recording that is being made.
 pub(super) struct Recorder {
     recording: Recording,
+    /// The scene with the parameters of its beginning.
+    scene: SceneFile,
 }
 
 /// A recording that is being played.
@@ -36,7 +39,7 @@ pub(super) struct Replayer {
 impl Session {
     /// Notes a command that was carried out.
     pub(super) fn record(&mut self, command: impl FnOnce() -> Command) {
-        let Some(Recorder { recording }) = &mut self.recorder else { return };
+        let Some(Recorder { recording, .. }) = &mut self.recorder else { return };
         let (at, command) = (recording.steps, command());
         // Of the moves of one instrument before one step the last counts.
         if let (Command::MoveInstrument { instrument, .. }, Some(last)) = (&command, recording.events.last_mut())
@@ -59,12 +62,12 @@ impl Session {
         // A tool that was taken away stays scripted, and the scene would bring it back.
         let untouched = play.world.steps() == 0 && play.tools.iter().all(|tool| tool.scripted && !tool.removed);
         recording.state = (!untouched).then(|| Bytes(play.world.snapshot()));
-        self.recorder = Some(Recorder { recording });
+        self.recorder = Some(Recorder { recording, scene: play.file.clone() });
     }
 
     pub(super) fn stop_recording(&mut self, request: Option<u64>) -> Result<(), Box<Refusal>> {
         let nothing = || refuse::with_help("nothing is being recorded", "`start-recording` begins");
-        let Recorder { mut recording } = self.recorder.take().ok_or_else(nothing)?;
+        let Recorder { mut recording, .. } = self.recorder.take().ok_or_else(nothing)?;
         if recording.marks.last().is_none_or(|mark| mark.at != recording.steps) {
             recording.marks.push(mark(&self.play, recording.steps));
         }
@@ -75,7 +78,7 @@ impl Session {
 
     /// After a step: counts it, and marks how the state is from time to time.
     pub(super) fn mark_recording(&mut self) {
-        let Some(Recorder { recording }) = &mut self.recorder else { return };
+        let Some(Recorder { recording, .. }) = &mut self.recorder else { return };
         recording.steps += 1;
         if recording.steps.is_multiple_of(INTERVAL) {
             recording.marks.push(mark(&self.play, recording.steps));
@@ -90,6 +93,11 @@ impl Session {
     /// How long the recording is that is being made [s].
     pub(super) fn recorded(&self) -> Option<f64> {
         self.recorder.as_ref().map(|recorder| recorder.recording.seconds())
+    }
+
+    /// The scene as it was when the recording began that is being made.
+    pub(super) fn recorded_scene(&self) -> Option<&SceneFile> {
+        self.recorder.as_ref().map(|recorder| &recorder.scene)
     }
 
     pub(super) fn start_replay(&mut self, recording: Recording) -> Result<(), Box<Refusal>> {

@@ -1,7 +1,7 @@
 use viscera_session::library;
 use viscera_session::message::{Command, ParameterKind, Value};
 
-use crate::support::{BAR, Page};
+use crate::support::{BAR, Page, hybrid_bar};
 
 /// The bar comes to rest lower the softer it is, from wherever it is when that changes.
 #[test]
@@ -58,6 +58,24 @@ fn every_choice_of_every_scene_is_taken_or_refused_with_a_reason() {
             assert_eq!(page.refusals(), [], "{} goes back to where it was", parameter.key);
         }
     }
+}
+
+/// Whoever tries another model or another law comes back to the region that the scene lets move.
+#[test]
+fn a_model_that_is_chosen_again_has_the_settings_of_the_scene() {
+    let mut page = Page::open(&hybrid_bar());
+    let opened = page.text();
+    assert!(opened.contains("dynamic"), "{opened}");
+    page.set("body.bar.model.kind", "hybrid");
+    assert_eq!(page.text(), opened, "it is chosen already");
+    page.set("body.bar.model.kind", "total-lagrangian");
+    assert_eq!(page.refusals(), []);
+    assert!(!page.text().contains("dynamic"), "another model has no such setting");
+    page.step(1);
+    page.set("body.bar.model.kind", "hybrid");
+    assert_eq!(page.refusals(), []);
+    assert_eq!(page.text(), opened);
+    page.step(1);
 }
 
 /// What a page shows is what the catalogue says: each value lies in its range, each default is what the scene file had.

@@ -2,7 +2,7 @@ use viscera_session::library;
 use viscera_session::message::{Bytes, Command, FrameMessage, RunState};
 use viscera_session::recording::{Recording, processor};
 
-use crate::support::{BAR, Page, light_bar};
+use crate::support::{BAR, Page, hybrid_bar, light_bar};
 
 /// A minute of a user's work, in half a second: lifts the end of the bar, softens it on the way, cuts it.
 fn work(page: &mut Page) {
@@ -94,6 +94,22 @@ path = [["0 s", [0.02, 0.06, 0.1]], ["0.2 s", [0.02, 0.02, 0.1]]]
     assert_eq!(play(&mut other, bytes), ["replayed 30 steps to the same bits"]);
     assert_eq!(other.positions(0), places);
     assert_eq!(other.scene().instruments.len(), 0);
+}
+
+/// A replay knows the scene as it was when the recording began, and a model that is chosen meanwhile has the settings of that one.
+#[test]
+fn a_model_that_is_chosen_while_recording_is_the_same_in_the_replay() {
+    let mut page = Page::open(&hybrid_bar());
+    page.set("body.bar.model.kind", "total-lagrangian");
+    page.step(5);
+    page.say(Command::StartRecording {});
+    page.set("body.bar.model.kind", "hybrid");
+    page.step(20);
+    page.say(Command::StopRecording {});
+    assert_eq!(page.refusals(), []);
+    let bytes = page.file();
+    let mut other = Page::open(BAR);
+    assert_eq!(play(&mut other, bytes), ["replayed 20 steps to the same bits"]);
 }
 
 /// A hand that meddles with a replay is refused; what departs is told with its step.

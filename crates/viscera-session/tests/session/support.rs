@@ -1,5 +1,7 @@
 use viscera::executor::Executor;
-use viscera_session::message::{Answer, Command, FrameMessage, Refusal, Request, SceneMessage, SurfaceMessage, Value};
+use viscera_session::message::{
+    Answer, Command, Export, FrameMessage, Refusal, Request, SceneMessage, SurfaceMessage, Value,
+};
 use viscera_session::{Seen, Session};
 
 /// A bar of 2 × 2 × 6 cubes that is held at one end and bends under its weight: a few hundredths of a second to build.
@@ -21,6 +23,13 @@ fix = "z-min"
 /// The same with so little gravity that it stays under the tools: its end sags by a millimetre.
 pub(crate) fn light_bar() -> String {
     BAR.replace("[body.bar]", "gravity = [0, -0.1, 0]\n\n[body.bar]")
+}
+
+/// The same in explicit steps, of which the outer half moves and the half that is held follows, pre-computed.
+pub(crate) fn hybrid_bar() -> String {
+    let dynamic = "dynamic = { half-space = { point = [0, 0, 0.06], normal = [0, 0, 1] } }";
+    BAR.replace("backward-euler", "explicit")
+        .replace(r#"kind = "total-lagrangian""#, &format!(r#"kind = "hybrid", {dynamic}"#))
 }
 
 /// A page without a picture.
@@ -133,6 +142,12 @@ impl Page {
             .into_iter()
             .filter_map(|answer| if let Answer::File(file) = answer { Some(file.bytes.0) } else { None });
         files.next_back().expect("a file came")
+    }
+
+    /// The scene with the present parameters.
+    pub(crate) fn text(&mut self) -> String {
+        self.say(Command::Export { what: Export::Scene });
+        String::from_utf8(self.file()).expect("a scene is text")
     }
 
     /// Brings an instrument in; gives its number.
