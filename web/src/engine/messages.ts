@@ -229,6 +229,10 @@ export interface Observables {
   worstQuality: number;
   nonlinearNodes: number;
   atRest: boolean;
+  /** Where volumes are kept exactly, the largest |V − V0|/V0 of them. */
+  volumeError?: number;
+  /** Of a hybrid body: how much the reaction of its pre-computed part changed in the last step, over its size. */
+  interfaceResidual?: number;
 }
 
 export interface Frame {

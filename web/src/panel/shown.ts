@@ -1,14 +1,17 @@
-import type { Scene } from '../engine/messages';
+import type { Observables, Scene } from '../engine/messages';
 import type { SessionClient } from '../engine/session';
 import { element, freshId, say } from '../dom';
+import { shownNumber } from './units';
 
-/** What is shown: colouring, the linear ghost, and what the bodies consist of. */
+/** What is shown: colouring, the linear ghost, what the bodies consist of, and how well they keep what they promise. */
 export class ShownPanel {
   readonly node: HTMLElement;
   private readonly colouring: HTMLSelectElement;
   private readonly summary = element('p', { className: 'note' });
   private readonly ghost: HTMLInputElement;
   private readonly facts = element('dl', { className: 'facts' });
+  private readonly errors = element('dl', { className: 'facts errors', hidden: true });
+  private readonly errorValues = new Map<string, HTMLElement>();
   private readonly session: SessionClient;
 
   constructor(session: SessionClient) {
@@ -52,6 +55,7 @@ export class ShownPanel {
         ),
       ),
       this.facts,
+      this.errors,
     );
     session.on('catalogue', ({ colourings }) => {
       this.colouring.replaceChildren(
@@ -62,7 +66,25 @@ export class ShownPanel {
       this.show();
     });
     session.on('scene', () => this.show());
+    session.on('frame', ({ observables }) => observables && this.measure(observables));
     session.on('role', () => this.show());
+  }
+
+  private measure(observables: readonly Observables[]): void {
+    const bodies = this.session.scene?.bodies ?? [];
+    const found = observables.flatMap((seen, index) => {
+      const body = bodies[index];
+      return body && body.ghostOf === undefined ? errorsOf(body.name, seen) : [];
+    });
+    if (found.map(([what]) => what).join() !== [...this.errorValues.keys()].join()) {
+      this.errorValues.clear();
+      for (const [what] of found) this.errorValues.set(what, element('dd'));
+      this.errors.replaceChildren(
+        ...found.flatMap(([what, why]) => [element('dt', { title: why }, what), this.errorValues.get(what)!]),
+      );
+      this.errors.hidden = found.length === 0;
+    }
+    for (const [what, , value] of found) say(this.errorValues.get(what)!, value);
   }
 
   private show(): void {
@@ -76,6 +98,28 @@ export class ShownPanel {
       ...factsOf(scene).flatMap(([what, value]) => [element('dt', {}, what), element('dd', {}, value)]),
     );
   }
+}
+
+/** What a body that promises something exact tells of it: name, what that is, and the value. */
+function errorsOf(
+  name: string,
+  { volumeError, interfaceResidual }: Observables,
+): [what: string, why: string, value: string][] {
+  const percent = (value: number) => `${shownNumber(100 * value, 2)} %`;
+  const found: [string, string, string][] = [];
+  if (volumeError !== undefined)
+    found.push([
+      `${name}, volume error`,
+      'Of the volumes that are kept exactly, the one that is farthest off',
+      percent(volumeError),
+    ]);
+  if (interfaceResidual !== undefined)
+    found.push([
+      `${name}, interface`,
+      'How much the reaction of the pre-computed part changed in the last step',
+      percent(interfaceResidual),
+    ]);
+  return found;
 }
 
 function factsOf(scene: Scene): [what: string, value: string][] {

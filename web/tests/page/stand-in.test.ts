@@ -70,6 +70,16 @@ test.describe('with a stand-in for the session', () => {
     await keep('cut');
   });
 
+  test('a body that keeps its volume or has a pre-computed part tells how well, and another nothing', async () => {
+    const errors = page.locator('.errors');
+    await expect(errors).toBeHidden();
+    session.errors = { volumeError: 2.5e-6, interfaceResidual: 0.031 };
+    await expect(errors.locator('dt')).toHaveText(['liver, volume error', 'liver, interface']);
+    await expect(errors.locator('dd')).toHaveText(['0.00025 %', '3.1 %']);
+    session.errors = {};
+    await expect(errors).toBeHidden();
+  });
+
   test('a change is said in SI units, and a refusal stands beside its control', async () => {
     const young = page.getByRole('textbox', { name: 'stiffness (Young)' });
     await expect(young).toHaveValue('3');

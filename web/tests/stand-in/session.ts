@@ -12,6 +12,8 @@ export class StandIn {
   readonly heard: Command[] = [];
   role: 'controller' | 'watcher' = 'controller';
   sessionNumber = 1;
+  /** What its body tells of volumes that it keeps and parts that are pre-computed. */
+  errors: { volumeError?: number; interfaceResidual?: number } = {};
   private route: WebSocketRoute | undefined;
   private readonly blob = blob();
   private sequence = 0;
@@ -217,6 +219,7 @@ export class StandIn {
       worstQuality: 0.3,
       nonlinearNodes: 0,
       atRest: false,
+      ...this.errors,
     };
     const unit = { volume: '', stress: 'Pa', displacement: 'm' }[this.colouring] ?? '';
     const [low, high] = this.colouring === 'volume' ? [-0.1, 0.1] : [0, 5600];

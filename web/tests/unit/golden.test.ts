@@ -30,4 +30,9 @@ test('the arrays of a kept surface and frame fit together', () => {
   expect(surface.triangles.length).toBe(3 * surface.cut.length);
   expect(Math.max(...surface.triangles)).toBeLessThan(surface.vertices);
   for (const body of frame.bodies) expect(body.positions.length % 3).toBe(0);
+  expect(frame.observables?.[0]).toMatchObject({
+    atRest: false,
+    volumeError: 1e-12,
+    interfaceResidual: 0.02,
+  });
 });

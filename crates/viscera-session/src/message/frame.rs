@@ -149,6 +149,12 @@ pub struct Observables {
     pub nonlinear_nodes: usize,
     /// Whether it has come to rest.
     pub at_rest: bool,
+    /// Where volumes are kept exactly, the largest |V − V0|/V0 of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume_error: Option<f64>,
+    /// Where a part is pre-computed, how much its reaction changed in the last step, over its size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interface_residual: Option<f64>,
 }
 
 /// While recording.

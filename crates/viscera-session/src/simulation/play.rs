@@ -1,5 +1,5 @@
 use viscera::executor::Executor;
-use viscera::world::StepError;
+use viscera::world::{BodyId, StepError};
 use viscera_scene::file::SceneFile;
 use viscera_scene::{Meshes, Scene};
 
@@ -7,7 +7,7 @@ use super::build::{Change, Fresh, Origin};
 use super::ghost::Ghost;
 use super::surface::{Surface, follow};
 use super::tools::{self, Hand, Tool};
-use super::world::AnyWorld;
+use super::world::{AnyWorld, with};
 use crate::message::{BodyEntry, Camera, Observables, Refusal};
 use crate::refuse;
 
@@ -233,6 +233,7 @@ pub(crate) struct Kept {
 
 fn observables(world: &mut AnyWorld, body: usize) -> Observables {
     let seen = world.observe(body);
+    let keeps_volumes = with!(world, world => world.body(BodyId(body)).kept_volumes().next().is_some());
     Observables {
         kinetic: seen.kinetic_energy,
         elastic: seen.elastic_energy,
@@ -245,6 +246,8 @@ fn observables(world: &mut AnyWorld, body: usize) -> Observables {
         worst_quality: seen.worst_quality,
         nonlinear_nodes: seen.nonlinear_nodes,
         at_rest: seen.at_rest,
+        volume_error: keeps_volumes.then_some(seen.volume_error),
+        interface_residual: seen.interface_residual,
     }
 }
 

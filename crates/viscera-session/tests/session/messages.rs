@@ -221,6 +221,8 @@ fn answers() -> Vec<(&'static str, Answer)> {
                     worst_quality: 0.3,
                     nonlinear_nodes: 300,
                     at_rest: false,
+                    volume_error: Some(1e-12),
+                    interface_residual: Some(0.02),
                 }]),
                 request: Some(7),
                 recording: Some(RecordingState { seconds: 1.5 }),

@@ -1,7 +1,7 @@
 use viscera_session::Seen;
 use viscera_session::message::{Answer, Command};
 
-use crate::support::{BAR, Page, light_bar};
+use crate::support::{BAR, Page, hybrid_bar, light_bar};
 
 /// Pictures that were left out are not missed: the next one has every surface and the scene, if they changed meanwhile.
 #[test]
@@ -116,4 +116,24 @@ fn measurements_outlast_the_ghost_and_hold_the_forces_on_tools() {
     let forces = column(11);
     assert!(forces[..=4].iter().all(|&force| force == 0.0), "there was no probe yet: {forces:?}");
     assert_eq!(forces.last(), Some(&felt));
+}
+
+/// Bodies that promise something exact say how well they keep it, and others say nothing.
+#[test]
+fn kept_volumes_and_precomputed_parts_tell_their_error() {
+    let errors = |text: &str| {
+        let mut page = Page::open(text);
+        page.step(5);
+        let seen = page.frame().observables.as_ref().unwrap()[0];
+        (seen.volume_error, seen.interface_residual)
+    };
+    assert_eq!(errors(BAR), (None, None));
+    let volume = "density = 1000\nexact-volume = [{ name = \"bar\", region = \"all\" }]";
+    let (volume, interface) = errors(&BAR.replace("backward-euler", "explicit").replace("density = 1000", volume));
+    assert!(volume.is_some_and(|error| error < 1e-4), "to the rounding of single precision: {volume:?}");
+    assert_eq!(interface, None);
+    // The bar falls: what holds its moving half has more to hold with each step, and not all of it within the last.
+    let (volume, interface) = errors(&hybrid_bar());
+    assert_eq!(volume, None);
+    assert!(interface.is_some_and(|change| change > 0.0 && change < 1.0), "{interface:?}");
 }
