@@ -36,6 +36,16 @@ pub enum Size {
     Full,
 }
 
+impl Size {
+    /// What a page says of the run that it is of.
+    pub(crate) fn sentence(self) -> &'static str {
+        match self {
+            Self::Small => "This page is of the small run (`--small`, as in the tests).",
+            Self::Full => "This page is of the full run.",
+        }
+    }
+}
+
 /// What is asked of a study.
 #[derive(Clone, Debug)]
 pub struct Settings {

@@ -13,7 +13,7 @@ use crate::setting::Cells;
 use crate::{Size, ValidationError};
 
 /// Deformations that each element is put in.
-const DEFORMATIONS: usize = 10;
+pub(super) const DEFORMATIONS: usize = 10;
 
 /// What became of the elements of a combination in one precision.
 #[derive(Clone, Debug, PartialEq)]

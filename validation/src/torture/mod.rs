@@ -25,6 +25,8 @@ use crate::{Size, ValidationError};
 
 /// What was found.
 pub struct Torture {
+    /// How large the meshes were.
+    pub size: Size,
     /// What the engine does not compute.
     pub refusals: Vec<Refusal>,
     /// Bodies released from impossible shapes.
@@ -47,6 +49,7 @@ pub struct Torture {
 /// [`ValidationError`] for an error that is no answer to torture: a mistake in the study.
 pub fn study(size: Size) -> Result<Torture, ValidationError> {
     Ok(Torture {
+        size,
         refusals: refusals()?,
         trials: release(size)?,
         ranges: ranges(size)?,

@@ -1,18 +1,39 @@
 //! The page of the suite.
 
-use super::{Combination, Cuts, ElementTally, End, Method, Obstacle, Outcome, Shape, Torture, Trial};
+use viscera::model::ModelKind;
+
+use super::elements::DEFORMATIONS;
+use super::release::{DAMPING, Extent, STEP};
+use super::{Combination, Cuts, ElementTally, End, Method, Obstacle, Outcome, Shape, Torture, Trial, ranges, sameness};
 use crate::Report;
 use crate::report::{Table, brief};
+use crate::setting::Cells;
+
+/// Some numbers in words.
+fn listed(numbers: &[f64]) -> String {
+    numbers.iter().map(|&number| plain(number)).collect::<Vec<_>>().join(", ")
+}
+
+/// A number as it is chosen, with no digits that were not.
+fn plain(number: f64) -> String {
+    if number == 0.0 || (1e-4..1e6).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
+}
 
 impl Torture {
     /// The page.
     pub fn report(&self) -> Report {
-        let report = Report::new("Torture").text(
+        let every = Extent::of(self.size).every;
+        let cases = if every == 1 { "every case".into() } else { format!("one case in {every}") };
+        let resting: Vec<&str> =
+            ModelKind::ALL.iter().map(|model| model.info()).filter(|info| !info.moves).map(|info| info.name).collect();
+        let report = Report::new("Torture").text(format!(
             "Every force model of every law on tetrahedra and hexahedra, with every integrator, in shapes, scales, units and cuts \
-             that nothing should survive. With `--small`, as in the tests, meshes are smaller, and of the shapes one case in \
-             five is tried. Nothing panics, no number that is none comes through, and what cannot be done is undone \
-             by an error that says what to do instead. In double precision unless it says otherwise.",
-        );
+             that nothing should survive. Nothing panics, no number that is none comes through, and what cannot be done is undone \
+             by an error that says what to do instead. In double precision unless it says otherwise. {} Of the shapes {cases} \
+             is tried. Bodies that do not move in time are asked what they compute, and have no steps to be tortured in: {}.",
+            self.size.sentence(),
+            resting.join(", ")
+        ));
         let report = self.refused(report);
         let report = self.released(report);
         let report = self.over_ranges(report);
@@ -97,15 +118,19 @@ impl Torture {
                 brief(trial.peak),
             ]);
         }
+        let Extent { cells, steps: [_, steps], .. } = Extent::of(self.size);
+        let [tetrahedra, hexahedra] = [Cells::Six, Cells::Hexahedra].map(|kind| kind.fill(cells, [1.0; 3]).cell_count());
+        let step = brief(1e3 * STEP);
         report
-            .text(
-                "## Released from impossible shapes\n\nA cube of 10 cm, 48 tetrahedra or 8 hexahedra, E = 10 kPa, ν = 0.4, \
-                 damped at 50 1/s; 300 steps of 20 ms, or until it is at rest. One side is held where it rests, or none. Its vertices are put at random \
+            .text(format!(
+                "## Released from impossible shapes\n\nA cube of 10 cm, {tetrahedra} tetrahedra or {hexahedra} hexahedra, E = 10 kPa, \
+                 ν = 0.4, damped at {DAMPING} 1/s; {steps} steps of {step} ms, or until it is at rest. One side is held where it rests, or \
+                 none. Its vertices are put at random \
                  places in a box twice as large; all in one point, on a line, in a plane; mirrored; stretched 1000 times; one \
                  vertex out through the opposite side. It is back when no distance within a cell differs from that at rest by \
                  more than a millionth of the size, and no cell is inverted. Gain: the largest in a step, and peak: the largest \
                  energy at all, both of the energy at the start, where the forces have a potential.",
-            )
+            ))
             .table(methods)
             .text(
                 "Which shapes come back, in backward Euler steps, linearised and in full, and in explicit ones; held and free. \
@@ -174,12 +199,20 @@ impl Torture {
                 brief(conserving.map(|tally| tally.gain).fold(0.0, f64::max)),
             ]);
         }
+        let [youngs, poissons, steps] = ranges::grids(self.size);
+        let besides = ranges::besides(self.size).map_or(String::new(), |[young, poisson, step]| {
+            format!("; and E = {} Pa with ν = {} and {} s", plain(young), plain(poisson), plain(step))
+        });
         report
-            .text(
-                "## Every stiffness, step and unit\n\nThe cube, held on one side and undamped, falls under its weight for four \
-                 steps: E from 100 Pa (its own weight is a kilopascal) to 1 GPa, ν from 0 to 0.4999, steps from 0.1 ms to 1 s, in \
-                 metres and in millimetres. Gain: of all energies that are about, gravity's included.",
-            )
+            .text(format!(
+                "## Every stiffness, step and unit\n\nThe cube, held on one side and undamped, falls under its weight for {} steps. E in \
+                 Pa: {}; ν: {}; steps in s: {}; each with each, in metres and in millimetres{besides}. Its own weight is a \
+                 kilopascal. Gain: of all energies that are about, gravity's included.",
+                ranges::STEPS,
+                listed(youngs),
+                listed(poissons),
+                listed(steps)
+            ))
             .table(table)
     }
 
@@ -199,11 +232,13 @@ impl Torture {
             ]);
         }
         report
-            .text(
-                "## The same motion told differently\n\nA bar bends under its weight for 0.2 s: in millimetres, turned and shifted \
-                 in twelve ways, with nodes and cells in random order. Largest difference, of the largest displacement (which \
+            .text(format!(
+                "## The same motion told differently\n\nA bar bends under its weight for {} s: in millimetres, turned and shifted \
+                 in {} ways, with nodes and cells in random order. Largest difference, of the largest displacement (which \
                  is given over the size). –: the law takes rotations for strain.",
-            )
+                plain(sameness::TIME),
+                sameness::turns(self.size)
+            ))
             .table(table)
     }
 
@@ -241,13 +276,19 @@ impl Torture {
             }
             table
         };
+        let cut = |hexahedra: bool| {
+            let of = self.cuts_to_nothing.iter().filter(|cuts| (cuts.combination.cells == Cells::Hexahedra) == hexahedra);
+            let cells = of.map(|cuts| cuts.cuts).max().unwrap_or(0);
+            format!("{cells} {}", if hexahedra { "hexahedra" } else { "tetrahedra" })
+        };
         report
-            .text("## Cut while inside out\n\nThe mirrored cube, held on one side, loses a cell after each step until none is left.")
+            .text("## Cut while inside out\n\nThe mirrored cube, held on one side, loses a cell before each step until none is left.")
             .table(table("cut-inverted", &self.inverted_cuts))
-            .text(
-                "## Cut down to nothing\n\nA held cube of 10⁵ cells under its weight loses them one by one, at random, with an \
+            .text(format!(
+                "## Cut down to nothing\n\nA held cube of {} under its weight loses them one by one, at random, with an \
                  explicit step now and then. Nothing of mass, volume or energy is left in the end, and the world goes on.",
-            )
+                [false, true].map(cut).join(" or ")
+            ))
             .table(table("cut-to-nothing", &self.cuts_to_nothing))
     }
 
@@ -281,10 +322,12 @@ impl Torture {
         let tried: u64 = self.elements.iter().map(|tally| tally.tried).sum();
         report
             .text(format!(
-                "## Single elements\n\n{tried} elements, slivers among them, of sizes down to denormal numbers and up to the largest \
-                 that there are, put in points, lines, planes, mirrors and random shapes: forces, products and energy. Broken: a \
+                "## Single elements\n\n{} elements in {} deformations each, {tried} in all, slivers among them, of sizes down to denormal \
+                 numbers and up to the largest that there are, put in points, lines, planes, mirrors and random shapes: forces, products and energy. Broken: a \
                  number that is none or infinite although every power of the deformation that the law takes is within the range of \
-                 the precision. Beyond that range numbers overflow, and steps that would are undone."
+                 the precision. Beyond that range numbers overflow, and steps that would are undone.",
+                tried / DEFORMATIONS as u64,
+                DEFORMATIONS
             ))
             .table(table)
     }

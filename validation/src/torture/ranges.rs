@@ -11,7 +11,7 @@ use crate::setting::plane;
 use crate::{Size, ValidationError};
 
 /// Steps made in each setting.
-const STEPS: u32 = 4;
+pub(super) const STEPS: u32 = 4;
 
 /// What a combination and an integrator did over the ranges.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,11 +47,21 @@ struct Setting {
     length: f64,
 }
 
+/// E [Pa], ν, and steps [s], each of which meets each.
+pub(super) fn grids(size: Size) -> [&'static [f64]; 3] {
+    match size {
+        Size::Full => [&[1e2, 1e4, 1e6, 1e9], &[0.0, 0.45, 0.4999], &[1e-4, 1e-3, 1e-2, 0.1, 1.0]],
+        Size::Small => [&[1e2, 1e5], &[0.0, 0.4999], &[1e-4, 1.0]],
+    }
+}
+
+/// What is tried besides: E [Pa], ν, and the step [s]. A second of tissue so stiff would be half a million explicit sub-steps.
+pub(super) fn besides(size: Size) -> Option<[f64; 3]> {
+    (size == Size::Small).then_some([1e9, 0.4999, 1e-4])
+}
+
 fn settings(size: Size) -> Vec<Setting> {
-    let (youngs, poissons, steps): (&[f64], &[f64], &[f64]) = match size {
-        Size::Full => (&[1e2, 1e4, 1e6, 1e9], &[0.0, 0.45, 0.4999], &[1e-4, 1e-3, 1e-2, 0.1, 1.0]),
-        Size::Small => (&[1e2, 1e5], &[0.0, 0.4999], &[1e-4, 1.0]),
-    };
+    let [youngs, poissons, steps] = grids(size);
     let mut settings = Vec::new();
     let mut in_both_units = |stiffness: Stiffness, step: f64| {
         settings.extend([1.0, 1000.0].map(|length| Setting { stiffness, step, length }));
@@ -61,9 +71,8 @@ fn settings(size: Size) -> Vec<Setting> {
             steps.iter().for_each(|&step| in_both_units(Stiffness { young, poisson }, step));
         }
     }
-    if size == Size::Small {
-        // A second of these would be half a million explicit sub-steps.
-        in_both_units(Stiffness { young: 1e9, poisson: 0.4999 }, 1e-4);
+    if let Some([young, poisson, step]) = besides(size) {
+        in_both_units(Stiffness { young, poisson }, step);
     }
     settings
 }

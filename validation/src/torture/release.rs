@@ -12,11 +12,33 @@ use crate::setting::plane;
 use crate::{Size, ValidationError};
 
 /// Length of a step [s].
-const STEP: f64 = 0.02;
+pub(super) const STEP: f64 = 0.02;
 /// Damping rate [1/s]: about critical for the slowest vibration of the cube.
-const DAMPING: f64 = 50.0;
+pub(super) const DAMPING: f64 = 50.0;
 /// What counts as back, of the size.
 const BACK: f64 = 1e-6;
+/// The small study takes one case in so many: prime to the numbers of integrators and shapes, so that every combination meets every
+/// integrator, and every shape each of them.
+const EVERY: usize = 5;
+
+/// What the size of a study decides.
+pub(super) struct Extent {
+    /// Cells along the edges of the cube.
+    pub(super) cells: [usize; 3],
+    /// Steps that are made at least, and at most.
+    pub(super) steps: [u32; 2],
+    /// Of so many cases one is tried.
+    pub(super) every: usize,
+}
+
+impl Extent {
+    pub(super) fn of(size: Size) -> Self {
+        match size {
+            Size::Full => Self { cells: [2, 2, 2], steps: [100, 300], every: 1 },
+            Size::Small => Self { cells: [1, 1, 2], steps: [40, 100], every: EVERY },
+        }
+    }
+}
 
 /// How it went.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,8 +94,7 @@ impl Outcome {
     }
 }
 
-/// Releases bodies of every combination, with every integrator, from every shape, held on one side and free. The small study
-/// takes one case in five, so that every combination meets every integrator, and every shape each of them.
+/// Releases bodies of every combination, with every integrator, from every shape, held on one side and free.
 pub(super) fn study(size: Size) -> Result<Vec<Trial>, ValidationError> {
     let mut cases = Vec::new();
     for combination in Combination::able() {
@@ -83,7 +104,7 @@ pub(super) fn study(size: Size) -> Result<Vec<Trial>, ValidationError> {
             }
         }
     }
-    let every = if size == Size::Full { 1 } else { 5 };
+    let every = Extent::of(size).every;
     let chosen = cases.into_iter().enumerate().filter(|(number, _)| number % every == 0);
     chosen.map(|(number, case)| attempt(case, size, number as u64)).collect()
 }
@@ -101,7 +122,7 @@ fn attempt(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> 
 
 fn release(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> {
     let Case { combination, method, shape, held } = case;
-    let cells = if size == Size::Full { [2, 2, 2] } else { [1, 1, 2] };
+    let Extent { cells, steps: [patience, steps], .. } = Extent::of(size);
     let mut body =
         combination.body(combination.cells.fill(cells, [EDGE; 3]), Stiffness::SOFT, 1000.0)?.damping(DAMPING);
     if held {
@@ -110,7 +131,6 @@ fn release(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> 
     let mut world = World::<f64>::new(WorldConfig { gravity: [0.0; 3], step: STEP, integrator: method.integrator })?;
     let id = world.add(body)?;
     shape.put_on(&mut world, id, &mut Random::new(seed));
-    let (patience, steps) = if size == Size::Full { (100, 300) } else { (40, 100) };
     let first = energy(&world.observe(id));
     let mut trial = Trial { case, outcome: Outcome::Moving, gain: 0.0, peak: 1.0, steps: 0, deviation: 0.0 };
     // At least what strains of one store: in its mirror image, tissue of a blind law has the energy of roundings.

@@ -11,8 +11,16 @@ use super::random::Random;
 use crate::references::Vector;
 use crate::{Size, ValidationError};
 
+/// Length of a step [s], and how many are made.
+const STEP: f64 = 0.01;
+const STEPS: u32 = 20;
+/// How long the bar bends [s].
+pub(super) const TIME: f64 = STEP * STEPS as f64;
+
 /// Turns that are tried.
-const TURNS: usize = 12;
+pub(super) fn turns(size: Size) -> usize {
+    if size == Size::Full { 12 } else { 2 }
+}
 
 /// Largest differences of a motion told differently from the plain one, of the largest displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +31,7 @@ pub struct Sameness {
     pub method: &'static str,
     /// In millimetres.
     pub units: f64,
-    /// Turned and shifted, the worst of twelve; nothing where the law takes turning for strain.
+    /// Turned and shifted, the worst of some; nothing where the law takes turning for strain.
     pub turned: Option<f64>,
     /// Nodes and cells in random order.
     pub renumbered: f64,
@@ -99,10 +107,9 @@ pub(super) fn attempt(combination: Combination, size: Size) -> Result<Vec<Samene
         };
         let mut random = Random::new(5);
         let units = differs(&Telling { length: 1000.0, ..Telling::PLAIN })?;
-        let turns = if size == Size::Full { TURNS } else { 2 };
         let mut turned = None;
         if combination.claims().objective {
-            for _ in 0..turns {
+            for _ in 0..turns(size) {
                 let telling = Telling { turn: random.rotation(), shift: random.vector(), ..Telling::PLAIN };
                 turned = Some(differs(&telling)?.max(turned.unwrap_or(0.0)));
             }
@@ -121,7 +128,7 @@ fn bar(combination: Combination, size: Size) -> VolumeMesh {
     combination.cells.fill(across, [0.05, 0.05, 0.15])
 }
 
-/// Displacements after a fifth of a second of bending under its own weight, told back in metres and in the plain pose and order.
+/// Displacements after some bending under its own weight, told back in metres and in the plain pose and order.
 fn play(
     combination: Combination,
     integrator: Integrator,
@@ -142,9 +149,9 @@ fn play(
         1e-9 * length,
     );
     let body = combination.turned_body(mesh, stiffness, 1000.0 / length.powi(3), &telling.turn)?.damping(3.0).fix(root);
-    let mut world = World::<f64>::new(WorldConfig { gravity, step: 0.01, integrator })?;
+    let mut world = World::<f64>::new(WorldConfig { gravity, step: STEP, integrator })?;
     let id = world.add(body)?;
-    for _ in 0..20 {
+    for _ in 0..STEPS {
         world.step()?;
     }
     let now = world.body(id).positions();
