@@ -79,6 +79,12 @@ impl Deformed {
         self.body().field(Field::new("change of volume", "%", &self.swelling()).range(-percent, percent))
     }
 
+    /// The same, coloured by how far each node is from where it is in another shape [mm], up to `most`.
+    pub(crate) fn body_by_distance(&self, other: &Self, name: &str, most: f64) -> Body {
+        let apart: Vec<f64> = self.places.iter().zip(&other.places).map(|(&a, &b)| 1e3 * (a - b).norm()).collect();
+        self.body().field(Field::new(name, "mm", &apart).range(0.0, most))
+    }
+
     /// The shape at rest, translucent.
     pub(crate) fn ghost(&self) -> Body {
         Body::new(&self.mesh.nodes, &self.mesh.surface().triangles).colour(Colour::PLAIN).ghost()

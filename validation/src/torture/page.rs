@@ -119,7 +119,8 @@ impl Torture {
             ]);
         }
         let Extent { cells, steps: [_, steps], .. } = Extent::of(self.size);
-        let [tetrahedra, hexahedra] = [Cells::Six, Cells::Hexahedra].map(|kind| kind.fill(cells, [1.0; 3]).cell_count());
+        let [tetrahedra, hexahedra] =
+            [Cells::Six, Cells::Hexahedra].map(|kind| kind.fill(cells, [1.0; 3]).cell_count());
         let step = brief(1e3 * STEP);
         report
             .text(format!(
@@ -277,7 +278,8 @@ impl Torture {
             table
         };
         let cut = |hexahedra: bool| {
-            let of = self.cuts_to_nothing.iter().filter(|cuts| (cuts.combination.cells == Cells::Hexahedra) == hexahedra);
+            let of =
+                self.cuts_to_nothing.iter().filter(|cuts| (cuts.combination.cells == Cells::Hexahedra) == hexahedra);
             let cells = of.map(|cuts| cuts.cuts).max().unwrap_or(0);
             format!("{cells} {}", if hexahedra { "hexahedra" } else { "tetrahedra" })
         };
