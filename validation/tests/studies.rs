@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use viscera::material::LawKind;
 use viscera::model::ModelKind;
-use viscera_validation::torture::{self, End, Outcome};
+use viscera_validation::torture::{self, Case, End, Obstacle, Outcome, Shape, Trial};
 use viscera_validation::truth_cube::Variant;
 use viscera_validation::{
     Settings, Size, StudyKind, cantilevers, extrapolation, fixed_beam, frequencies, multigrid, nearly_incompressible,
@@ -172,30 +172,85 @@ fn what_is_not_computed_is_refused_and_nothing_else() {
     }
 }
 
+/// Whether a body that nothing keeps from its rest shape may end otherwise, and why. Linear laws may not.
+fn may_end_otherwise(trial: &Trial) -> bool {
+    let Case { combination, method, shape, .. } = trial.case;
+    let (stable, plain) = (combination.law == LawKind::StableNeoHookean, combination.law == LawKind::NeoHookean);
+    let turns = matches!(combination.model, ModelKind::Corotational | ModelKind::StiffnessWarping);
+    match trial.outcome {
+        Outcome::Back => true,
+        // Far out the stiffness is not positive, and the full equations of so long a step are not solved: the step says so.
+        Outcome::Undone("not converged") => method.name.ends_with("full Newton") && (stable || plain || turns),
+        // A thousand sizes are more than an explicit step can come back from with a law that hardens so.
+        Outcome::Undone("diverged") => method.name == "explicit" && shape == Shape::Stretched && (stable || plain),
+        // Laws with a volume term have other equilibria: folded over, no cell inside out.
+        Outcome::Elsewhere => stable || plain,
+        // The stable law is driven back from inside out by whatever cell, the plain one is not.
+        Outcome::Inverted(_) => plain,
+        // Soft where it is flat, and slow; or swinging still, after a thousand sizes.
+        Outcome::Moving => stable || turns && shape == Shape::Stretched,
+        _ => false,
+    }
+}
+
+/// Schemes that damp, and the share of the bodies that nothing keeps from their rest shape which find it in the time that they
+/// have. Newmark's scheme and the energy–momentum one keep what energy there is.
+const COME_BACK: [(&str, f64); 5] = [
+    ("explicit", 0.9),
+    ("backward Euler, linearised", 0.9),
+    ("backward Euler, full Newton", 0.8),
+    ("BDF2, linearised", 0.9),
+    ("BDF2, full Newton", 0.8),
+];
+
 /// Released from impossible shapes, no body yields a number that is none, none gains energy in full backward Euler steps, and
-/// whatever nothing is in the way of comes back, or to rest elsewhere.
+/// whatever nothing is in the way of comes back, but for what is named.
 #[test]
 fn released_from_impossible_shapes_tissue_comes_back() {
     let trials = torture::release(Size::Small).unwrap();
     for trial in &trials {
         let (case, outcome) = (&trial.case, &trial.outcome);
         assert!(!matches!(outcome, Outcome::NotANumber | Outcome::Panicked), "{trial:?}");
-        if case.has_energy() && case.method.never_gains() {
+        if case.combination.has_energy() && case.method.never_gains() {
             // Newton's residual of 1e-8, squared, is what an energy near its minimum feels of it; and roundings.
             assert!(trial.gain < 1e-14, "{trial:?}");
         }
-        if case.has_energy() && case.method.stays_bounded() {
+        if case.combination.has_energy() && case.method.stays_bounded() {
             assert!(trial.peak < 1.0 + 1e-9, "{trial:?}");
         }
     }
-    // The rest is at another equilibrium without an inverted cell, or soft and slow.
-    let due: Vec<_> =
-        trials.iter().filter(|trial| trial.case.method.stays_bounded() && trial.case.obstacle().is_none()).collect();
-    let back = due.iter().filter(|trial| trial.outcome == Outcome::Back).count();
-    assert!(due.len() > 30 && 10 * back >= 9 * due.len(), "{back} of {} come back", due.len());
+    for (name, share) in COME_BACK {
+        let made = |trial: &&Trial| trial.case.method.name == name && !matches!(trial.outcome, Outcome::Refused(_));
+        let (mut due, mut back) = (0, 0);
+        for trial in trials.iter().filter(made) {
+            let combination = trial.case.combination;
+            match trial.case.obstacle() {
+                None => {
+                    assert!(may_end_otherwise(trial), "{trial:?}");
+                    due += 1;
+                    back += usize::from(trial.outcome == Outcome::Back);
+                }
+                // Only these do not know inside from outside.
+                Some(Obstacle::Mirror) => assert!(
+                    combination.model == ModelKind::MassSpring
+                        || matches!(combination.law, LawKind::StVenantKirchhoff | LawKind::TransverseStVenantKirchhoff),
+                    "{trial:?}"
+                ),
+                // Shape memory finds its places again but out of disorder, or where a step is not solved.
+                Some(Obstacle::Twist) => assert!(
+                    trial.outcome == Outcome::Back
+                        || trial.case.shape == Shape::Random
+                        || trial.outcome == Outcome::Undone("not converged"),
+                    "{trial:?}"
+                ),
+                Some(Obstacle::Symmetry | Obstacle::Turned) => {}
+            }
+        }
+        assert!(due > 50 && back as f64 >= share * due as f64, "{name}: {back} of {due} come back");
+    }
 }
 
-/// Every stiffness, step and unit: steps are made or refused, and backward Euler gains no energy.
+/// Every stiffness, step and unit: steps are made or refused, and backward Euler that is solved in full gains no energy.
 #[test]
 fn no_stiffness_step_or_unit_breaks_a_step() {
     for tally in torture::ranges(Size::Small).unwrap() {
@@ -204,6 +259,10 @@ fn no_stiffness_step_or_unit_breaks_a_step() {
             tally.made + tally.undone.iter().sum::<u32>(),
             if tally.refused.is_some() { 0 } else { tally.tried }
         );
+        if tally.method.never_gains() && tally.combination.has_energy() {
+            // Roundings of the weight's energy, in steps of 0.1 ms, which move the cube by less than a millionth of its size.
+            assert!(tally.gain < 1e-9, "{tally:?}");
+        }
     }
 }
 

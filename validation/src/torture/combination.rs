@@ -45,6 +45,12 @@ impl Combination {
         self.model.claims(self.law, self.cells == Cells::Hexahedra)
     }
 
+    /// Whether the forces have a potential, so that energy means something. That of shape memory jumps where neighbours are turned
+    /// inside out.
+    pub fn has_energy(self) -> bool {
+        self.claims().conservative && self.model != ModelKind::ShapeMemory
+    }
+
     pub(super) fn name(self) -> String {
         let cells = if self.cells == Cells::Hexahedra { ", hexahedra" } else { "" };
         format!("{} of {}{cells}", self.model, self.law)

@@ -83,7 +83,7 @@ impl Torture {
             let count = |good: &dyn Fn(&Trial) -> bool| of.iter().filter(|trial| good(trial)).count().to_string();
             let refused = |trial: &Trial| matches!(trial.outcome, Outcome::Refused(_));
             let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none();
-            let conserving = of.iter().filter(|trial| trial.case.has_energy());
+            let conserving = of.iter().filter(|trial| trial.case.combination.has_energy());
             let (gain, peak) = conserving
                 .fold((0.0, 0.0), |(gain, peak): (f64, f64), trial| (gain.max(trial.gain), peak.max(trial.peak)));
             methods.push(vec![
@@ -187,7 +187,7 @@ impl Torture {
             let sum = |number: &dyn Fn(&super::RangeTally) -> u32| {
                 of.iter().map(|tally| number(tally)).sum::<u32>().to_string()
             };
-            let conserving = of.iter().filter(|tally| tally.combination.claims().conservative);
+            let conserving = of.iter().filter(|tally| tally.combination.has_energy());
             table.push(vec![
                 method.name.into(),
                 sum(&|tally| tally.tried),

@@ -100,12 +100,6 @@ pub enum Obstacle {
 }
 
 impl Case {
-    /// Whether the forces have a potential, so that energy means something. That of shape memory jumps where neighbours are turned
-    /// inside out.
-    pub fn has_energy(&self) -> bool {
-        self.combination.claims().conservative && self.combination.model != ModelKind::ShapeMemory
-    }
-
     /// What is in the way of the rest shape; nothing where it has to come back.
     pub fn obstacle(&self) -> Option<Obstacle> {
         // A flat cell may leave its plane on either side.
