@@ -26,6 +26,8 @@ const POISSON: f64 = 0.3;
 const DAMPING: f64 = 12.0;
 /// A node that is nearer than this to its place is back, of the length.
 const BACK: f64 = 0.01;
+/// What moves slower than this is at rest, in lengths a second.
+const STILL: f64 = 0.01;
 
 const NO_NUMBERS: &str = "no numbers";
 
@@ -35,26 +37,115 @@ fn linear() -> Result<Tissue, ReproduceError> {
     Ok(Tissue::uniform(LinearElastic::from_young_poisson(YOUNG, POISSON)?))
 }
 
-/// Models, and whether theory brings each of them back from its mirror image; where it says nothing, nothing.
-const MODELS: [(&str, Option<bool>, Recipe); 10] = [
-    ("corotational, polar", Some(true), || Ok(Box::new(Corotational::new(linear()?)))),
-    ("corotational, QR", Some(true), || Ok(Box::new(Corotational::new(linear()?).rotation(Rotation::Qr)))),
-    ("corotational, SVD", Some(true), || Ok(Box::new(Corotational::new(linear()?).rotation(Rotation::Svd)))),
-    ("corotational, polar, B updated", None, || {
-        Ok(Box::new(Corotational::new(linear()?).strain_displacement(StrainDisplacement::Updated)))
-    }),
-    ("stiffness warping", None, || Ok(Box::new(StiffnessWarping::new(linear()?)))),
-    ("St Venant–Kirchhoff", Some(false), || {
-        Ok(Box::new(TotalLagrangian::new(Tissue::uniform(StVenantKirchhoff::from_young_poisson(YOUNG, POISSON)?))))
-    }),
-    ("neo-Hookean", None, || {
-        Ok(Box::new(TotalLagrangian::new(Tissue::uniform(NeoHookean::from_young_poisson(YOUNG, POISSON)?))))
-    }),
-    ("stable neo-Hookean", Some(true), || {
-        Ok(Box::new(TotalLagrangian::new(Tissue::uniform(StableNeoHookean::from_young_poisson(YOUNG, POISSON)?))))
-    }),
-    ("discrete, shape memory", None, || Ok(Box::new(ShapeMemory::new(linear()?)))),
-    ("discrete, mass–spring net", None, || Ok(Box::new(MassSpring::new(linear()?)))),
+/// What theory says of a bar that was turned inside out.
+#[derive(Clone, Copy, PartialEq)]
+enum Theory {
+    /// It comes back.
+    Back,
+    /// It stays as it is.
+    Stays,
+    /// Nothing.
+    Silent,
+}
+
+/// A model, and what to expect of it.
+struct Candidate {
+    name: &'static str,
+    theory: Theory,
+    why: &'static str,
+    /// Name of the pictures of how it ends, where there are any.
+    picture: Option<&'static str>,
+    recipe: Recipe,
+}
+
+const fn candidate(
+    name: &'static str,
+    theory: Theory,
+    why: &'static str,
+    picture: Option<&'static str>,
+    recipe: Recipe,
+) -> Candidate {
+    Candidate { name, theory, why, picture, recipe }
+}
+
+const SHAPE_MEMORY: &str = "discrete, shape memory";
+const NET: &str = "discrete, mass–spring net";
+
+const MODELS: [Candidate; 10] = [
+    candidate(
+        "corotational, polar",
+        Theory::Back,
+        "The rotation of an inverted cell is a rotation all the same: the axis of the smallest stretch is flipped, and the stretch along it is \
+         negative, which its stress resists.",
+        None,
+        || Ok(Box::new(Corotational::new(linear()?))),
+    ),
+    candidate(
+        "corotational, QR",
+        Theory::Back,
+        "The third axis is the cross product of the other two, right-handed in every cell.",
+        None,
+        || Ok(Box::new(Corotational::new(linear()?).rotation(Rotation::Qr))),
+    ),
+    candidate(
+        "corotational, SVD",
+        Theory::Back,
+        "As the polar one: the smallest singular value takes the sign of the volume.",
+        None,
+        || Ok(Box::new(Corotational::new(linear()?).rotation(Rotation::Svd))),
+    ),
+    candidate(
+        "corotational, polar, B updated",
+        Theory::Silent,
+        "Its strain is I − S⁻¹ with S = RᵀF: infinite in a flat cell, which an inverted one has to pass through, and never above 1 in a \
+         long one, which is hardly drawn back. Nor are its forces the gradient of an energy that could fall to that of rest.",
+        Some("b-updated"),
+        || Ok(Box::new(Corotational::new(linear()?).strain_displacement(StrainDisplacement::Updated))),
+    ),
+    candidate(
+        "stiffness warping",
+        Theory::Silent,
+        "Each node has a rotation, right-handed as the polar one of cells.",
+        None,
+        || Ok(Box::new(StiffnessWarping::new(linear()?))),
+    ),
+    candidate(
+        "St Venant–Kirchhoff",
+        Theory::Stays,
+        "Its strain ½(FᵀF − I) is that of the mirror image: inside out is as good as at rest.",
+        Some("st-venant-kirchhoff"),
+        || Ok(Box::new(TotalLagrangian::new(Tissue::uniform(StVenantKirchhoff::from_young_poisson(YOUNG, POISSON)?)))),
+    ),
+    candidate(
+        "neo-Hookean",
+        Theory::Silent,
+        "Inverted cells are driven back, steeply: below three tenths of its volume the energy of a cell goes on along a parabola. What may \
+         hold the bar is another equilibrium, folded over.",
+        None,
+        || Ok(Box::new(TotalLagrangian::new(Tissue::uniform(NeoHookean::from_young_poisson(YOUNG, POISSON)?)))),
+    ),
+    candidate(
+        "stable neo-Hookean",
+        Theory::Back,
+        "Inverted cells are driven back, by an energy that nowhere is steep.",
+        None,
+        || Ok(Box::new(TotalLagrangian::new(Tissue::uniform(StableNeoHookean::from_young_poisson(YOUNG, POISSON)?)))),
+    ),
+    candidate(
+        SHAPE_MEMORY,
+        Theory::Silent,
+        "A node's place is on the side of its neighbours on which it was at rest; but an inner node rests at their centroid, and only borders \
+         draw such a region back. Out of disorder each node may find its place among neighbours that stand in a twist.",
+        Some("shape-memory"),
+        || Ok(Box::new(ShapeMemory::new(linear()?))),
+    ),
+    candidate(
+        NET,
+        Theory::Stays,
+        "Lengths are all that springs know, and those of the mirror image are the same.",
+        Some("net"),
+        || Ok(Box::new(MassSpring::new(linear()?))),
+    ),
 ];
 
 /// From where the bar is let go.
@@ -104,6 +195,10 @@ struct Outcome {
     inverted: Vec<(f64, f64)>,
     /// Largest distance of a node from its place in the end, of the length.
     away: f64,
+    /// The fastest node in the end, in lengths a second.
+    fastest: f64,
+    /// The end.
+    shape: Deformed,
     /// Why a step was refused, where one was.
     refused: Option<String>,
 }
@@ -120,7 +215,10 @@ impl Outcome {
             None if self.still_inverted() > 0.0 => {
                 format!("{:.1} % of the cells stay inside out", self.still_inverted())
             }
-            None => format!("not back: {:.0} % of the length away", 100.0 * self.away),
+            None => {
+                let how = if self.fastest > STILL { "still moving" } else { "at rest in another shape" };
+                format!("not back: {:.0} % of the length away, {how}", 100.0 * self.away)
+            }
         }
     }
 }
@@ -129,28 +227,32 @@ fn let_go(size: Size, recipe: Recipe, start: Start) -> Result<Outcome, Reproduce
     let (mut world, id) = world(size, recipe, start)?;
     let steps = 300;
     let cells = world.body(id).cell_count() as f64;
-    let mut outcome = Outcome { inverted: Vec::new(), away: f64::NAN, refused: None };
+    let (mut inverted, mut refused) = (Vec::new(), None);
     let percent = |world: &mut World<f64>| 100.0 * world.observe(id).inverted_cells as f64 / cells;
-    outcome.inverted.push((0.0, percent(&mut world)));
+    inverted.push((0.0, percent(&mut world)));
     for step in 1..=steps {
         if let Err(error) = world.step() {
-            outcome.refused = Some(error.to_string());
+            refused = Some(error.to_string());
             break;
         }
         if step <= 50 || step % 10 == 0 {
-            outcome.inverted.push((world.time(), percent(&mut world)));
+            inverted.push((world.time(), percent(&mut world)));
         }
     }
-    outcome.away = world.observe(id).max_displacement / LENGTH;
-    Ok(outcome)
+    let away = world.observe(id).max_displacement / LENGTH;
+    let body = world.body(id);
+    let fastest = body.velocities().iter().map(|velocity| velocity.norm()).fold(0.0, f64::max) / LENGTH;
+    let mesh = mesh(size);
+    let ways: Vec<Vector> = body.positions().iter().zip(&mesh.nodes).map(|(&now, &rest)| now - rest).collect();
+    Ok(Outcome { inverted, away, fastest, shape: Deformed::new(&mesh, &ways), refused })
 }
 
 /// Places after a few steps from a bend in which no cell is inverted.
 fn swung(size: Size, rotation: Rotation) -> Result<Vec<Vector>, ReproduceError> {
     let recipe: Recipe = match rotation {
-        Rotation::Polar => MODELS[0].2,
-        Rotation::Qr => MODELS[1].2,
-        Rotation::Svd => MODELS[2].2,
+        Rotation::Polar => MODELS[0].recipe,
+        Rotation::Qr => MODELS[1].recipe,
+        Rotation::Svd => MODELS[2].recipe,
     };
     let (mut world, id) = world(size, recipe, Start::Bent)?;
     for _ in 0..10 {
@@ -172,38 +274,49 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
     let mut section = Section::new(
         "A bar is pushed through its own foot, so that every cell is inside out, and let go; then once more from a heap in which every \
          node is at a random place. Rotations by polar decomposition, QR and SVD bring the bar back. St Venant–Kirchhoff's law \
-         cannot tell a cell from its mirror image and leaves it inside out.",
+         and a net of springs cannot tell a cell from its mirror image and leave it inside out. Shape memory brings back most \
+         of what the net leaves, and not all.",
     )
     .setting("bar", format!("5 × 5 × 10 cm, {} tetrahedra, held at its foot", mesh.cells.len()))
     .setting("tissue", format!("E = {} kPa, ν = {POISSON}, damping {DAMPING} 1/s", YOUNG / 1e3))
     .setting("steps", "linearised backward Euler, 10 ms, double precision");
-    for (name, theory, recipe) in MODELS {
+    let mut ends = Vec::new();
+    let mut still = Vec::new();
+    for Candidate { name, theory, why, picture, recipe } in MODELS {
         let [mirrored, scattered] = [Start::Mirrored, Start::Scattered].map(|start| let_go(size, recipe, start));
         let (mirrored, scattered) = (mirrored?, scattered?);
         table.push(vec![name.into(), mirrored.words(), scattered.words()]);
+        let found = format!("mirrored: {}; scattered: {}", mirrored.words(), scattered.words());
+        section = section.compare_words(name, [NO_NUMBERS, &found], why);
         section = match theory {
-            Some(true) => section
-                .relation(Relation::at_most(
-                    format!("{name}: mirrored, it comes back [of the length]"),
-                    mirrored.away,
-                    BACK,
-                ))
-                .compare_words(
-                    name,
-                    [NO_NUMBERS, &format!("mirrored: {}; scattered: {}", mirrored.words(), scattered.words())],
-                    "",
-                ),
-            Some(false) => section.relation(Relation::at_least(
+            Theory::Back => section.relation(Relation::at_most(
+                format!("{name}: mirrored, it comes back [of the length]"),
+                mirrored.away,
+                BACK,
+            )),
+            Theory::Stays => section.relation(Relation::at_least(
                 format!("{name}: mirrored, it stays inside out [% of the cells]"),
                 mirrored.still_inverted(),
                 50.0,
             )),
-            None => section,
+            Theory::Silent => section,
         };
+        still.push((name, [mirrored.still_inverted(), scattered.still_inverted()]));
+        for (start, outcome) in [("mirrored", &mirrored), ("scattered", &scattered)] {
+            if let Some(picture) = picture {
+                ends.push((
+                    format!("{picture}-{start}"),
+                    format!("{name}, {start}: {}", outcome.words()),
+                    outcome.shape.clone(),
+                ));
+            }
+        }
         if mirrored.refused.is_none() {
             plot.curve(name, mirrored.inverted.into_iter().filter(|point| point.0 < 0.505).collect());
         }
     }
+    let inverted = |name: &str| still.iter().find(|(other, _)| *other == name).map_or([f64::NAN; 2], |found| found.1);
+    let ([memory, memory_scattered], [net, net_scattered]) = (inverted(SHAPE_MEMORY), inverted(NET));
     let [polar, qr, svd] = [Rotation::Polar, Rotation::Qr, Rotation::Svd].map(|rotation| swung(size, rotation));
     let (polar, qr, svd) = (polar?, qr?, svd?);
     let apart = |other: &[Vector]| polar.iter().zip(other).map(|(&a, &b)| (a - b).norm()).fold(0.0, f64::max) / LENGTH;
@@ -227,10 +340,30 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
             [shape.ghost(), shape.body()],
         )?);
     }
+    // What rests in another shape is framed with the rest; what ran away would make all of them small.
+    let near = |shape: &Deformed| {
+        shape.bounds().1.max(-shape.bounds().0).to_array().into_iter().fold(0.0, f64::max) < 3.0 * LENGTH
+    };
+    let view = camera(
+        ends.iter().map(|(_, _, shape)| shape).filter(|shape| near(shape)),
+        [-0.35, 1.0, -0.25],
+        [0.0, 0.0, 1.0],
+    );
+    let ends =
+        ends.into_iter().map(|(name, caption, shape)| photograph(name, caption, view, [shape.ghost(), shape.body()]));
+    let ends = ends.collect::<Result<Vec<_>, _>>()?;
     Ok(section
+        .relation(Relation::at_most(
+            "mirrored, far fewer cells stay inside out with shape memory than in the net: a third of them [%]",
+            memory,
+            net / 3.0,
+        ))
+        .relation(Relation::at_most("and fewer when scattered [%]", memory_scattered, net_scattered))
         .relation(Relation::at_most("polar and SVD agree where no cell is inverted [of the length]", apart(&svd), 1e-6))
         .relation(Relation::at_most("QR is near them there [of the length]", apart(&qr), 0.05))
         .pictures(pictures)
         .plot(plot)
-        .table("Three seconds after it was let go", table))
+        .table("Three seconds after it was let go", table)
+        .text("How some of them end:")
+        .pictures(ends))
 }
