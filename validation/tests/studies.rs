@@ -89,9 +89,12 @@ fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_me
     let measured = measured_beads();
     let found = truth_cube::study(&Settings { size: Size::Small, measured }).unwrap();
     // On 6³ cells; on 10³ the force comes within 2 % and the means within 0.1.
-    for row in found.rows.iter().filter(|row| row.variant.is_free_of_locking() && row.variant.is_neo_hookean()) {
+    for row in found.rows.iter().filter(|row| row.variant.is_free_of_locking()) {
         let outcome = row.outcome.as_ref().expect("an equilibrium");
-        assert!((outcome.force - 1.0).abs() < 0.08, "{} of the converged force", outcome.force);
+        assert!((outcome.force - 1.0).abs() < 0.08, "{}: {} of the converged force", row.variant.name(), outcome.force);
+        if !row.variant.is_neo_hookean() {
+            continue;
+        }
         assert!(outcome.from_converged.mean < 0.7, "{:?}", outcome.from_converged);
         if let Some(deviation) = outcome.from_measured {
             let published = [1.07, 1.47, 1.82][row.state];

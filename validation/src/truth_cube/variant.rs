@@ -107,6 +107,14 @@ impl Variant {
         matches!(self.kind, Kind::NeoHookean { .. })
     }
 
+    /// The converged reference that its force is compared with. Linear tissue in turning cells has none of its own.
+    pub(super) fn converged_law(&self) -> &'static str {
+        match self.kind {
+            Kind::SmallStrain { .. } => "glued_linear",
+            Kind::NeoHookean { .. } | Kind::Corotational { .. } | Kind::StiffnessWarping => "glued_neohooke",
+        }
+    }
+
     /// The cube of `cells` cells to an edge, free.
     pub(super) fn body(&self, cells: usize, young: f64, poisson: f64) -> Result<Body, ValidationError> {
         let share = self.cells.share();

@@ -11,7 +11,7 @@ use viscera_validation::plot::{Plot, Scale};
 use viscera_validation::{Settings, Size, Table};
 
 use super::Experiment;
-use crate::deformed::Vector;
+use crate::deformed::{Deformed, Vector, camera, photograph};
 use crate::{Relation, ReproduceError, Section};
 
 pub(super) const EXPERIMENT: Experiment = Experiment {
@@ -63,6 +63,10 @@ const VARIANTS: [Variant; 9] = [
     variant("stiffness warping by node", [false, false, true], None, AT_REST),
 ];
 
+/// Variants whose ends are shown, and the names of the pictures: one without a torque and two that begin to spin.
+const PICTURED: [(&str, &str); 3] =
+    [("polar, B at rest", "polar"), ("QR, B at rest", "qr"), ("stiffness warping by node", "warping")];
+
 impl Variant {
     fn world(&self, size: Size) -> Result<(World<f64>, BodyId), ReproduceError> {
         let across = if size == Size::Full { 4 } else { 2 };
@@ -105,6 +109,15 @@ struct Found {
     torque: f64,
     /// Angular momentum against time [s, g m²/s].
     momentum: Vec<(f64, f64)>,
+    /// The bar when it is let go and in the end; nothing of hexahedra.
+    shapes: Option<[Deformed; 2]>,
+}
+
+fn shape(world: &World<f64>, id: BodyId) -> Option<Deformed> {
+    let body = world.body(id);
+    let VolumeMesh::Tet(mesh) = body.mesh() else { return None };
+    let ways: Vec<Vector> = body.positions().iter().zip(&mesh.nodes).map(|(&now, &rest)| now - rest).collect();
+    Some(Deformed::new(mesh, &ways))
 }
 
 fn found(variant: &Variant, size: Size) -> Result<Found, ReproduceError> {
@@ -112,6 +125,7 @@ fn found(variant: &Variant, size: Size) -> Result<Found, ReproduceError> {
     let observed = world.observe(id);
     let forces: f64 = world.body(id).state().internal_forces.iter().map(|force| force.norm()).sum();
     let (force, torque) = (observed.net_internal_force.norm(), observed.net_internal_torque.norm());
+    let start = shape(&world, id);
     let mut momentum = vec![(0.0, 0.0)];
     let steps = if size == Size::Full { 100 } else { 20 };
     for step in 1..=steps {
@@ -123,7 +137,8 @@ fn found(variant: &Variant, size: Size) -> Result<Found, ReproduceError> {
             momentum.push((world.time(), 1e3 * world.observe(id).angular_momentum.norm()));
         }
     }
-    Ok(Found { force: force / forces, torque: torque / (forces * LENGTH), momentum })
+    let shapes = start.zip(shape(&world, id)).map(|(start, end)| [start, end]);
+    Ok(Found { force: force / forces, torque: torque / (forces * LENGTH), momentum, shapes })
 }
 
 fn run(settings: &Settings) -> Result<Section, ReproduceError> {
@@ -150,8 +165,13 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
         Scale::Linear,
     );
     let mut pushed = 0.0_f64;
+    let mut pictured = Vec::new();
     for variant in &VARIANTS {
-        let Found { force, torque, momentum } = found(variant, settings.size)?;
+        let Found { force, torque, momentum, shapes } = found(variant, settings.size)?;
+        if let (Some((_, name)), Some(ends)) = (PICTURED.iter().find(|(pictured, _)| *pictured == variant.name), shapes)
+        {
+            pictured.push((*name, variant.name, ends));
+        }
         // Each node turns its own forces: what two nodes do to each other is not opposite.
         if variant.rotation.is_some() {
             pushed = pushed.max(force);
@@ -167,6 +187,15 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
         table.push(vec![variant.name.into(), format!("{force:.0e}"), format!("{torque:.1e}"), format!("{end:.1e}")]);
         plot.curve(variant.name, momentum);
     }
+    let view = camera(pictured.iter().flat_map(|(_, _, shapes)| shapes), [-0.35, 1.0, -0.25], [0.0, 0.0, 1.0]);
+    let mut pictures = Vec::new();
+    if let Some((_, _, [start, _])) = pictured.first() {
+        let caption = "When it is let go; the bar at rest, translucent";
+        pictures.push(photograph("start", caption, view, [start.ghost(), start.body()])?);
+    }
+    for (name, variant, [_, end]) in &pictured {
+        pictures.push(photograph(*name, format!("{variant}, in the end"), view, [end.ghost(), end.body()])?);
+    }
     Ok(section
         .relation(Relation::at_most("sum of the forces, every variant by element", pushed, 1e-12))
         .compare_words(
@@ -176,6 +205,7 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
              fibres, QR and one rotation for a whole hexahedron break that.",
         )
         .compare_words("torque of B updated", ["none", "none"], "")
+        .pictures(pictures)
         .plot(plot)
         .table("Forces of the bar when it is let go, and what comes of them", table))
 }
