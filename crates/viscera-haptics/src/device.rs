@@ -90,6 +90,25 @@ pub trait Device: Send {
     fn release(&mut self);
 }
 
+/// A device whose kind is known only when the program runs.
+impl<D: Device + ?Sized> Device for Box<D> {
+    fn rating(&self) -> Rating {
+        (**self).rating()
+    }
+
+    fn read(&mut self, now: f64) -> Result<Reading, DeviceError> {
+        (**self).read(now)
+    }
+
+    fn command(&mut self, force: Vector) -> Result<(), DeviceError> {
+        (**self).command(force)
+    }
+
+    fn release(&mut self) {
+        (**self).release();
+    }
+}
+
 /// Where the handle of a device is, in the device's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {

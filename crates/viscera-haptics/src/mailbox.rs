@@ -76,6 +76,11 @@ impl<V: Packed<N>, const N: usize> Reader<V, N> {
         let slot = &self.slots.slots[self.front as usize];
         Some(V::unpack(&std::array::from_fn(|word| slot[word].load(Ordering::Relaxed))))
     }
+
+    /// Whether there still is a side that gives values.
+    pub fn is_connected(&self) -> bool {
+        Arc::strong_count(&self.slots) > 1
+    }
 }
 
 /// Words of a [`Sample`].

@@ -70,6 +70,11 @@ impl SimulationSide {
         self.pose
     }
 
+    /// Whether the channel still runs: it ends when it is stopped, and when its device is lost.
+    pub fn is_connected(&self) -> bool {
+        self.poses.is_connected()
+    }
+
     /// Sends what the tissue said to such a pose; its time goes into the sample.
     ///
     /// # Errors

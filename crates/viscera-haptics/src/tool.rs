@@ -2,7 +2,7 @@ use viscera::instrument::{ToolInput, ToolPose};
 use viscera::math::Scalar;
 use viscera::world::{InstrumentId, StepError, World, WorldError};
 
-use crate::{Contact, Matrix, Pose, Sample, Vector};
+use crate::{Contact, Matrix, Pose, Sample, Vector, Workspace};
 
 /// An instrument of a world in the hand: it goes where the hand goes, and says what the hand is to feel.
 ///
@@ -121,7 +121,7 @@ impl Tool {
         pose: &Pose,
         offset: Vector,
     ) -> Result<(Vector, Contact), ToolError> {
-        let pose_there = ToolPose { tip: pose.position + offset, ..tool_pose(pose) };
+        let pose_there = ToolPose { tip: pose.position + offset, ..pose.tool_pose() };
         world.set_tool(self.instrument, ToolInput::new(pose_there, pose.trigger))?;
         world.step()?;
         let seen = world.observe_instrument(self.instrument);
@@ -130,18 +130,39 @@ impl Tool {
     }
 }
 
-/// The pose of a tool whose handle has these axes: the third points from the handle to the tip, and a roll of zero is the shortest
-/// turn from a tool that points down, along −y, with its first axis along x.
-fn tool_pose(pose: &Pose) -> ToolPose {
-    let [across, _, direction] = pose.orientation.columns;
-    let down = Vector::new(0.0, -1.0, 0.0);
-    let (axis, along) = (direction.cross(down), down.dot(direction));
-    let level = if along > -1.0 + 1e-12 {
-        across * along + axis.cross(across) + axis * (axis.dot(across) / (1.0 + along))
+/// Where tools point that are not turned.
+const DOWN: Vector = Vector::new(0.0, -1.0, 0.0);
+
+impl Pose {
+    /// The pose of a tool whose handle has these axes: the third points from the handle to the tip, and a roll of zero is the
+    /// shortest turn from a tool that points down, along −y, with its first axis along x.
+    pub fn tool_pose(&self) -> ToolPose {
+        let [across, _, direction] = self.orientation.columns;
+        let level = shortest_turn(direction, DOWN, across);
+        ToolPose { tip: self.position, direction, roll: level.z.atan2(level.x) }
+    }
+}
+
+impl Workspace {
+    /// A device at rest in its origin is where this tool is, and its handle points as the tool does.
+    pub fn of_tool(tool: &ToolPose) -> Self {
+        let direction = tool.direction.normalized().unwrap_or(DOWN);
+        let (sin, cos) = tool.roll.sin_cos();
+        let level = [Vector::new(cos, 0.0, sin), Vector::new(-sin, 0.0, cos), DOWN];
+        let rotation = Matrix { columns: level.map(|axis| shortest_turn(DOWN, direction, axis)) };
+        Self { origin: tool.tip, rotation, ..Self::default() }
+    }
+}
+
+/// What the shortest turn that leads `from` to `to`, both of length 1, makes of a vector. Against each other, one of them down, the turn
+/// is about x.
+fn shortest_turn(from: Vector, to: Vector, v: Vector) -> Vector {
+    let (axis, along) = (from.cross(to), from.dot(to));
+    if along > -1.0 + 1e-12 {
+        v * along + axis.cross(v) + axis * (axis.dot(v) / (1.0 + along))
     } else {
-        Vector::new(across.x, -across.y, -across.z)
-    };
-    ToolPose { tip: pose.position, direction, roll: level.z.atan2(level.x) }
+        Vector::new(v.x, -v.y, -v.z)
+    }
 }
 
 #[cfg(test)]
@@ -160,9 +181,23 @@ mod tests {
             let level = [Vector::new(cos, 0.0, sin), Vector::new(-sin, 0.0, cos), Vector::new(0.0, -1.0, 0.0)];
             let (sin, cos) = f64::sin_cos(swing);
             let about_x = |v: Vector| Vector::new(v.x, cos * v.y - sin * v.z, sin * v.y + cos * v.z);
-            let found = tool_pose(&pose(Matrix { columns: level.map(about_x) }));
+            let found = pose(Matrix { columns: level.map(about_x) }).tool_pose();
             assert!((found.roll - roll).abs() < 1e-12, "{}, not {roll}", found.roll);
             assert!((found.direction - Vector::new(0.0, -cos, -sin)).norm() < 1e-12);
+        }
+    }
+
+    /// A tool of the scene that a device takes over as it is: its pose comes back from the device at rest.
+    #[test]
+    fn a_device_at_rest_in_the_workspace_of_a_tool_is_where_the_tool_is() {
+        let directions = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.6, -0.64, 0.48], [-0.6, 0.0, 0.8]];
+        for (number, direction) in directions.into_iter().map(Vector::from).enumerate() {
+            let tool = ToolPose { tip: Vector::new(0.1, -0.2, 0.3), direction, roll: 0.4 * number as f64 - 0.8 };
+            let workspace = Workspace::of_tool(&tool);
+            workspace.check().expect("a rotation");
+            let rest = Pose { position: workspace.to_scene(Vector::ZERO), ..pose(workspace.rotation) }.tool_pose();
+            assert!((rest.tip - tool.tip).norm() < 1e-15);
+            assert!((rest.direction - direction).norm() < 1e-12 && (rest.roll - tool.roll).abs() < 1e-12, "{rest:?}");
         }
     }
 }

@@ -167,8 +167,9 @@ fn a_thread_exchanges_poses_and_samples_and_releases_the_device() {
             _ => std::thread::yield_now(),
         }
     }
-    assert!(thread.is_running());
+    assert!(thread.is_running() && simulation.is_connected());
     let report = thread.stop();
+    assert!(!simulation.is_connected(), "the simulation sees that the channel is over");
     let statistics = report.statistics.unwrap();
     assert_eq!(report.end, End::Stopped);
     assert!(statistics.ticks >= 300 && statistics.samples > 0 && statistics.refused == 0, "{statistics:?}");
