@@ -1,4 +1,5 @@
 mod commands;
+mod hand;
 mod picture;
 mod replay;
 mod steps;
@@ -17,6 +18,7 @@ use crate::message::{Answer, Command, Level, Notice, Refusal, Request, RunState,
 use crate::refuse;
 use crate::simulation::colour::Colouring;
 use crate::simulation::{Kept, Play};
+use hand::InHand;
 use picture::Gallery;
 use replay::{Recorder, Replayer};
 
@@ -50,6 +52,7 @@ pub struct Session {
     slots: [Option<Kept>; SLOTS],
     recorder: Option<Recorder>,
     replayer: Option<Replayer>,
+    in_hand: Option<InHand>,
     history: History,
     answers: Vec<Answer>,
     gallery: Gallery,
@@ -78,6 +81,7 @@ impl Session {
             slots: Default::default(),
             recorder: None,
             replayer: None,
+            in_hand: None,
             history: History::default(),
             answers: Vec::new(),
             gallery: Gallery::default(),
@@ -107,7 +111,11 @@ impl Session {
     pub fn handle(&mut self, Request { command, request }: Request) {
         self.last_request = request.or(self.last_request);
         let name = name_of(&command);
-        if let Err(refusal) = self.carry_out(command, request) {
+        let done = match self.held_by_another(&command) {
+            Some(refusal) => Err(refusal),
+            None => self.carry_out(command, request),
+        };
+        if let Err(refusal) = done {
             self.refuse(Refusal { command: name, request, ..*refusal });
         }
     }
@@ -152,6 +160,7 @@ impl Session {
             self.notify(Level::Warning, "the recording ended with its scene and was not kept", "");
         }
         self.play = play;
+        self.in_hand = None;
         self.slots = Default::default();
         self.history.clear();
         self.clock.forgive();

@@ -135,7 +135,7 @@ impl Session {
         let scene = match self.gallery.scene.clone() {
             Some(scene) => scene,
             None => {
-                let message = Answer::Scene(self.scene_message());
+                let message = Answer::Scene(self.scene());
                 let part = self.gallery.part(&message);
                 self.gallery.scene.insert(part).clone()
             }
@@ -163,7 +163,8 @@ impl Session {
         gallery.surfaces.iter().map(|(.., part)| part.clone()).collect()
     }
 
-    fn scene_message(&self) -> SceneMessage {
+    /// What a page hears of the scene.
+    pub fn scene(&self) -> SceneMessage {
         let play = &self.play;
         let (centre, radius) = play.ball;
         let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);

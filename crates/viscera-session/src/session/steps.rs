@@ -12,19 +12,24 @@ impl Session {
     /// time is to be spent, and say that by [`Session::give_up`].
     pub fn work(&mut self) -> bool {
         self.make_pending_changes();
-        match self.state {
-            RunState::Running if self.clock.is_due(self.play.world.step_length()) => self.make_step(),
-            RunState::Paused if self.asked > 0 => {
-                self.asked -= 1;
-                self.make_step();
-            }
-            RunState::Stopped if self.asked > 0 => {
-                self.asked = 0;
-                self.make_step();
-            }
-            _ => return false,
+        if !self.is_step_due() {
+            return false;
         }
+        match self.state {
+            RunState::Running => {}
+            RunState::Paused => self.asked -= 1,
+            RunState::Stopped => self.asked = 0,
+        }
+        self.make_step();
         true
+    }
+
+    /// Whether a step is to be made now: by the clock, or because it was asked for.
+    pub fn is_step_due(&self) -> bool {
+        match self.state {
+            RunState::Running => self.clock.is_due(self.play.world.step_length()),
+            RunState::Paused | RunState::Stopped => self.asked > 0,
+        }
     }
 
     /// No more can be done before the next picture: what is due and will not be caught up with counts as lag.
@@ -35,6 +40,11 @@ impl Session {
     /// Whether the simulation follows the clock.
     pub fn is_running(&self) -> bool {
         self.state == RunState::Running
+    }
+
+    /// Whether a step was refused, and nothing goes on before somebody mends that.
+    pub fn is_stopped(&self) -> bool {
+        self.state == RunState::Stopped
     }
 
     /// Time until the next step is due [s]; none while nothing is.
