@@ -5,9 +5,11 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
+use viscera_haptics::Extrapolation;
 use viscera_reproduce::EXPERIMENTS;
 
-use crate::bench::arguments::BenchCommand;
+use crate::bench::arguments::{BenchCommand, extrapolation};
+use crate::emulated::Emulated;
 use crate::mesh::arguments::MeshCommand;
 use crate::units::time;
 
@@ -160,6 +162,17 @@ pub(crate) struct ServeArguments {
     /// Threads to compute on; by default one less than there are cores. Bodies of a few thousand cells gain nothing.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// Put an instrument into a hand that feels the tissue a thousand times a second; how regularly is told at the end. `emulated` is a
+    /// hand without hardware: it goes along the instrument's path in the scene and back, or presses along its direction where
+    /// it has none. `emulated:80mm` presses so far.
+    #[arg(long, value_name = "DEVICE", value_parser = Emulated::parse)]
+    pub(crate) haptics: Option<Emulated>,
+    /// Which instrument the hand leads, by its number from 0 in the order of the scene; by default the first that is no cautery.
+    #[arg(long, value_name = "NUMBER", requires = "haptics")]
+    pub(crate) haptics_instrument: Option<u32>,
+    /// How the force goes on between two steps of the simulation: hold, time, position or linearised (the default).
+    #[arg(long, value_name = "HOW", requires = "haptics", value_parser = extrapolation)]
+    pub(crate) haptics_extrapolation: Option<Extrapolation>,
 }
 
 impl ServeArguments {
@@ -178,6 +191,9 @@ impl Default for ServeArguments {
             allow_host: Vec::new(),
             no_open: false,
             threads: None,
+            haptics: None,
+            haptics_instrument: None,
+            haptics_extrapolation: None,
         }
     }
 }

@@ -4,6 +4,7 @@ mod arguments;
 mod bench;
 mod built_in;
 mod check;
+mod emulated;
 mod failure;
 mod instruction_set;
 mod interrupt;

@@ -5,25 +5,32 @@ use std::path::Path;
 use std::thread;
 
 use viscera::executor::Executor;
+use viscera_haptics::{ChannelSettings, Priority};
 use viscera_scene::Scene;
-use viscera_server::{ServeError, Server, Settings};
+use viscera_server::{Haptics, HapticsError, ServeError, Server, Settings, instrument_for_a_hand};
 use viscera_session::message::{Command, Refusal, Request};
 use viscera_session::{Session, library};
 
 use crate::arguments::ServeArguments;
+use crate::emulated::{Emulated, say_figures};
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::terminal;
 
 pub(crate) fn serve(arguments: &ServeArguments) -> Result<(), Failure> {
+    let interrupt = Interrupt::listen()?;
     // Connections and the browser want a core too.
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let threads = arguments.threads.map_or(cores.saturating_sub(1).max(1), usize::from);
-    let server = listen(arguments, &|| session(arguments, threads))?;
+    let (mut server, in_hand) = listen(arguments, threads)?;
     let address = server.address();
     let shown =
         if address.ip().is_unspecified() { format!("localhost:{}", address.port()) } else { address.to_string() };
     let url = format!("http://{shown}/");
     terminal::say(&format!("the simulator is at {url} (Ctrl-C ends it)"));
+    if let Some(in_hand) = in_hand {
+        terminal::say(&in_hand);
+    }
     if let Some(reason) = server.missing_page() {
         terminal::complain(&format!(
             "this program was built without its page: {reason} Install Node.js 20 or newer with npm, and build it again"
@@ -32,21 +39,51 @@ pub(crate) fn serve(arguments: &ServeArguments) -> Result<(), Failure> {
         // Where that fails, the address stands above.
         let _ = open::that_detached(&url);
     }
-    server.wait();
-    Ok(())
+    server.serve_until(|| interrupt.is_asked());
+    server.stop().map_or(Ok(()), |report| say_figures(&report.channel, &report.steps, false).map(|_| ()))
 }
 
-/// Listens on the first port that is free.
-fn listen(arguments: &ServeArguments, session: &dyn Fn() -> Result<Session, Failure>) -> Result<Server, Failure> {
+/// Listens on the first port that is free. Says what the device in hand does, if there is one.
+fn listen(arguments: &ServeArguments, threads: usize) -> Result<(Server, Option<String>), Failure> {
     let mut ports = arguments.ports().into_iter().peekable();
     while let Some(port) = ports.next() {
-        let settings = Settings { address: arguments.address, port, allowed_hosts: arguments.allow_host.clone() };
-        match Server::start(settings, session()?) {
+        let settings = Settings {
+            address: arguments.address,
+            port,
+            allowed_hosts: arguments.allow_host.clone(),
+            ..Settings::default()
+        };
+        let session = session(arguments, threads)?;
+        let (haptics, in_hand) = arguments
+            .haptics
+            .map(|emulated| in_hand(emulated, &session, arguments))
+            .transpose()
+            .map_err(Failure::input)?
+            .unzip();
+        match Server::start_with(settings, session, haptics) {
+            Ok(server) => return Ok((server, in_hand)),
             Err(ServeError::Bind { .. }) if ports.peek().is_some() => {}
-            started => return started.map_err(Failure::problem),
+            Err(ServeError::Haptics(error)) => return Err(Failure::input(error)),
+            Err(error) => return Err(Failure::problem(error)),
         }
     }
     Err(Failure::problem("there is no port to listen on"))
+}
+
+/// A device that takes an instrument of the session over, and what it does in words.
+fn in_hand(
+    emulated: Emulated,
+    session: &Session,
+    arguments: &ServeArguments,
+) -> Result<(Haptics, String), HapticsError> {
+    let shape = instrument_for_a_hand(session, arguments.haptics_instrument)?;
+    let Some(tool) = session.instrument(shape.instrument) else { return Err(HapticsError::NoInstruments) };
+    let (device, workspace, way) = emulated.device(&tool, session.path(shape.instrument));
+    let extrapolation = arguments.haptics_extrapolation.unwrap_or_default();
+    let settings = ChannelSettings { workspace, extrapolation, ..ChannelSettings::default() };
+    let text = format!("an emulated hand leads instrument {}, `{}`: it {way}", shape.instrument, shape.name);
+    let (instrument, priority) = (shape.instrument, Priority::RealTime);
+    Ok((Haptics { device: Box::new(device), instrument, settings, priority }, text))
 }
 
 /// The session, with its scene, at play.
@@ -79,7 +116,7 @@ fn find(wanted: &str) -> Result<(String, Scene), Failure> {
     }
 }
 
-fn said(refusal: &Refusal) -> String {
+pub(crate) fn said(refusal: &Refusal) -> String {
     let place =
         refusal.excerpt.as_ref().map_or(String::new(), |at| format!("{}:{}:{}: ", at.source, at.line, at.column));
     let help = if refusal.help.is_empty() { String::new() } else { format!("; {}", refusal.help) };

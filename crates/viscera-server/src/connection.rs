@@ -1,12 +1,14 @@
 //! One connection: what comes in goes to the session, if it may; what is new goes out, the newest only.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message, WebSocket};
+use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::time::timeout;
+use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 use viscera_session::Seen;
 use viscera_session::message::{Answer, Command, LONGEST, Refusal, Request, Role, RoleMessage, VERSION, Welcome};
 
@@ -18,8 +20,16 @@ const GREETING: Duration = Duration::from_secs(10);
 /// How long a connection may take to accept a message, before it counts as lost.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+/// How many pings in a row may stay unanswered before a connection counts as lost.
+const UNANSWERED: u32 = 3;
+/// How long a connection that was closed stays open for the other side to read why: with bytes unread, its end would be a reset, which
+/// may overtake the reason.
+const FAREWELL: Duration = Duration::from_secs(1);
+
 /// RFC 6455, section 7.4.1: against the rules of the server.
 const POLICY: u16 = 1008;
+/// RFC 6455, section 7.4.1: a message that is too long.
+const TOO_LONG: u16 = 1009;
 
 /// What every connection knows.
 #[derive(Clone)]
@@ -28,37 +38,75 @@ pub(crate) struct House {
     pub(crate) room: Room,
     /// Tells runs of the program apart.
     pub(crate) number: u64,
+    /// Time from one ping to the next.
+    pub(crate) ping: Duration,
 }
 
-/// The connection is lost, or was closed.
-struct Gone;
+/// How a connection ends.
+enum Parting {
+    /// It is lost, or the other side has closed it.
+    Gone,
+    /// The server closes it, and says why.
+    Shown { code: u16, reason: String },
+}
+
+impl Parting {
+    /// After a message that could not be read.
+    fn after(error: &axum::Error) -> Self {
+        // The error itself is of a crate that axum keeps to itself.
+        if error.to_string().contains("Message too long") {
+            let reason = format!("a message has at most {} MiB", LONGEST >> 20);
+            return Self::Shown { code: TOO_LONG, reason };
+        }
+        Self::Gone
+    }
+
+    /// Says why, if there is something to say.
+    async fn tell(self, mut socket: WebSocket) {
+        let Self::Shown { code, reason } = self else { return };
+        // A close frame holds 123 bytes.
+        let reason: String = reason.chars().take(100).collect();
+        let reason = reason.chars().map(|letter| if letter.is_ascii() { letter } else { '?' }).collect::<String>();
+        let close = Message::Close(Some(CloseFrame { code, reason: reason.into() }));
+        if matches!(timeout(FAREWELL, socket.send(close)).await, Ok(Ok(()))) {
+            sleep(FAREWELL).await;
+        }
+    }
+}
 
 /// Serves a connection until it ends.
 pub(crate) async fn serve(mut socket: WebSocket, house: House) {
-    if greet(&mut socket).await.is_err() {
-        return;
-    }
-    let guest = Guest { seat: house.room.enter(), stage: house.stage, socket, seen: Seen::default() };
-    // However it ended, there is nobody left to tell.
-    let _ = guest.stay(house.number).await;
+    let parting = match greet(&mut socket).await {
+        Err(parting) => parting,
+        Ok(()) => {
+            let guest =
+                Guest { seat: house.room.enter(), stage: house.stage, socket: &mut socket, seen: Seen::default() };
+            // The seat is free again when this is over, before the reason is told.
+            let Err(parting) = guest.stay(house.number, house.ping).await;
+            parting
+        }
+    };
+    parting.tell(socket).await;
 }
 
-/// Hears a hello of the right version, or closes with the reason.
-async fn greet(socket: &mut WebSocket) -> Result<(), Gone> {
+/// Hears a hello of the right version.
+async fn greet(socket: &mut WebSocket) -> Result<(), Parting> {
     let hello = async {
-        while let Some(Ok(message)) = socket.recv().await {
-            match message {
-                Message::Binary(bytes) => return Ok(bytes),
-                Message::Text(_) => return Err("messages are binary"),
-                Message::Close(_) => break,
-                Message::Ping(_) | Message::Pong(_) => {}
+        loop {
+            match socket.recv().await {
+                Some(Ok(Message::Binary(bytes))) => return Ok(bytes),
+                Some(Ok(Message::Text(_))) => {
+                    return Err(Parting::Shown { code: POLICY, reason: "messages are binary".into() });
+                }
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                Some(Err(error)) => return Err(Parting::after(&error)),
+                Some(Ok(Message::Close(_))) | None => return Err(Parting::Gone),
             }
         }
-        Err("")
     };
-    let wrong = match timeout(GREETING, hello).await {
+    let reason = match timeout(GREETING, hello).await {
         Err(_) => "no hello came in time".to_owned(),
-        Ok(Err(text)) => text.to_owned(),
+        Ok(Err(parting)) => return Err(parting),
         Ok(Ok(bytes)) => match Request::decode(&bytes).map(|request| request.command) {
             Ok(Command::Hello { version: VERSION, .. }) => return Ok(()),
             Ok(Command::Hello { version, .. }) => {
@@ -68,23 +116,25 @@ async fn greet(socket: &mut WebSocket) -> Result<(), Gone> {
             Err(refusal) => refusal.reason,
         },
     };
-    // A close frame holds 123 bytes.
-    let reason: String = wrong.chars().take(100).collect();
-    let reason = reason.chars().map(|letter| if letter.is_ascii() { letter } else { '?' }).collect::<String>();
-    let _ = socket.send(Message::Close(Some(CloseFrame { code: POLICY, reason: reason.into() }))).await;
-    Err(Gone)
+    Err(Parting::Shown { code: POLICY, reason })
 }
 
 /// Somebody who is connected and has said hello.
-struct Guest {
+struct Guest<'a> {
     seat: Seat,
     stage: Stage,
-    socket: WebSocket,
+    socket: &'a mut WebSocket,
     seen: Seen,
 }
 
-impl Guest {
-    async fn stay(mut self, number: u64) -> Result<(), Gone> {
+/// All of a command that a refusal needs.
+#[derive(Deserialize)]
+struct Numbered {
+    request: Option<u64>,
+}
+
+impl Guest<'_> {
+    async fn stay(mut self, number: u64, ping: Duration) -> Result<Infallible, Parting> {
         let mut answers = self.stage.answers.subscribe();
         let mut pictures = self.stage.pictures.clone();
         let mut changes = self.seat.changes.clone();
@@ -100,11 +150,24 @@ impl Guest {
         self.send(Answer::Welcome(welcome).encode().into()).await?;
         self.send(Arc::clone(&self.stage.catalogue)).await?;
         self.show(&mut pictures).await?;
+        let (mut pulse, mut unanswered) = (interval(ping), 0);
+        // After a message that took long to send, a whole pause for answers that wait to be read.
+        pulse.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             tokio::select! {
-                message = self.socket.recv() => self.hear(message).await?,
+                message = self.socket.recv() => {
+                    unanswered = 0;
+                    self.hear(message).await?;
+                }
+                _ = pulse.tick() => {
+                    if unanswered == UNANSWERED {
+                        return Err(Parting::Gone);
+                    }
+                    unanswered += 1;
+                    self.send_message(Message::Ping(Bytes::new())).await?;
+                }
                 changed = changes.changed() => {
-                    changed.map_err(|_| Gone)?;
+                    changed.map_err(|_| Parting::Gone)?;
                     if self.seat.role() != (role, clients) {
                         (role, clients) = self.seat.role();
                         self.send(Answer::Role(RoleMessage { role, clients }).encode().into()).await?;
@@ -118,10 +181,10 @@ impl Guest {
                     }
                     // It was too slow for some: what matters is in the scene.
                     Err(RecvError::Lagged(_)) => {}
-                    Err(RecvError::Closed) => return Err(Gone),
+                    Err(RecvError::Closed) => return Err(Parting::Gone),
                 },
                 changed = pictures.changed() => {
-                    changed.map_err(|_| Gone)?;
+                    changed.map_err(|_| Parting::Gone)?;
                     self.show(&mut pictures).await?;
                 }
             }
@@ -132,7 +195,7 @@ impl Guest {
     async fn show(
         &mut self,
         pictures: &mut tokio::sync::watch::Receiver<Option<viscera_session::Picture>>,
-    ) -> Result<(), Gone> {
+    ) -> Result<(), Parting> {
         let picture = pictures.borrow_and_update().clone();
         for part in picture.map(|picture| picture.parts_for(&mut self.seen)).unwrap_or_default() {
             self.send(part).await?;
@@ -140,30 +203,35 @@ impl Guest {
         Ok(())
     }
 
-    async fn hear(&mut self, message: Option<Result<Message, axum::Error>>) -> Result<(), Gone> {
+    async fn hear(&mut self, message: Option<Result<Message, axum::Error>>) -> Result<(), Parting> {
         let bytes = match message {
             Some(Ok(Message::Binary(bytes))) => bytes,
             Some(Ok(Message::Text(_))) => return self.refuse("", None, "messages are binary MessagePack").await,
             Some(Ok(Message::Ping(_) | Message::Pong(_))) => return Ok(()),
-            Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(Gone),
+            Some(Err(error)) => return Err(Parting::after(&error)),
+            Some(Ok(Message::Close(_))) | None => return Err(Parting::Gone),
         };
         if self.seat.role().0 == Role::Watcher {
-            let request = Request::decode(&bytes).ok().and_then(|request| request.request);
+            // A mesh of 64 MiB is not read for somebody who only looks on.
+            let request = rmp_serde::from_slice(&bytes).ok().and_then(|Numbered { request }| request);
             return self
                 .refuse("", request, "another page controls the simulation; this one watches until that leaves")
                 .await;
         }
-        if self.stage.send(bytes.into()).await { Ok(()) } else { Err(Gone) }
+        if self.stage.send(bytes.into()).await { Ok(()) } else { Err(Parting::Gone) }
     }
 
-    async fn refuse(&mut self, command: &str, request: Option<u64>, reason: &str) -> Result<(), Gone> {
+    async fn refuse(&mut self, command: &str, request: Option<u64>, reason: &str) -> Result<(), Parting> {
         let refusal = Refusal { command: command.into(), reason: reason.into(), request, ..Refusal::default() };
         self.send(Answer::Refusal(refusal).encode().into()).await
     }
 
-    async fn send(&mut self, bytes: Arc<[u8]>) -> Result<(), Gone> {
-        let message = Message::Binary(Bytes::from_owner(bytes));
-        timeout(PATIENCE, self.socket.send(message)).await.map_err(|_| Gone)?.map_err(|_| Gone)
+    async fn send(&mut self, bytes: Arc<[u8]>) -> Result<(), Parting> {
+        self.send_message(Message::Binary(Bytes::from_owner(bytes))).await
+    }
+
+    async fn send_message(&mut self, message: Message) -> Result<(), Parting> {
+        timeout(PATIENCE, self.socket.send(message)).await.map_err(|_| Parting::Gone)?.map_err(|_| Parting::Gone)
     }
 }
 

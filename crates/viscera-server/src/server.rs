@@ -1,5 +1,5 @@
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use axum::Router;
 use axum::extract::{Request, State, WebSocketUpgrade};
@@ -10,10 +10,13 @@ use axum::routing::get;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
+use tokio::time::sleep;
+use viscera_haptics::{StartError, Statistics};
 use viscera_session::Session;
 
 use crate::connection::{self, House, LONGEST_MESSAGE};
 use crate::guard::Guard;
+use crate::haptics::{Channel, Haptics, HapticsError, HapticsReport};
 use crate::page;
 use crate::room::Room;
 use crate::simulation::Stage;
@@ -27,11 +30,15 @@ pub struct Settings {
     pub port: u16,
     /// Names besides `localhost` and addresses by which pages may reach the server, with or without a port.
     pub allowed_hosts: Vec<String>,
+    /// Time from one ping to the next [> 0]; 5 s by default. A connection that leaves three in a row unanswered is lost, and its seat is
+    /// free.
+    pub ping: Duration,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { address: Ipv4Addr::LOCALHOST.into(), port: 7373, allowed_hosts: Vec::new() }
+        let address = Ipv4Addr::LOCALHOST.into();
+        Self { address, port: 7373, allowed_hosts: Vec::new(), ping: Duration::from_secs(5) }
     }
 }
 
@@ -49,13 +56,26 @@ pub enum ServeError {
     /// The system refuses threads.
     #[error("the system refuses threads to serve with: {0}")]
     Threads(std::io::Error),
+    /// The haptic device cannot lead the instrument.
+    #[error(transparent)]
+    Haptics(#[from] HapticsError),
 }
+
+impl From<StartError> for ServeError {
+    fn from(error: StartError) -> Self {
+        Self::Haptics(error.into())
+    }
+}
+
+/// How often a server asks whether it is to end.
+const LOOK_UP: Duration = Duration::from_millis(50);
 
 /// A server at work, until it is dropped.
 pub struct Server {
     address: SocketAddr,
+    channel: Option<Channel>,
     runtime: Runtime,
-    stopped: Option<oneshot::Receiver<()>>,
+    stopped: oneshot::Receiver<()>,
 }
 
 impl Server {
@@ -64,6 +84,17 @@ impl Server {
     /// # Errors
     /// [`ServeError`].
     pub fn start(settings: Settings, session: Session) -> Result<Self, ServeError> {
+        Self::start_with(settings, session, None)
+    }
+
+    /// Serves a session, an instrument of which is led by a haptic device.
+    ///
+    /// # Errors
+    /// [`ServeError`]. The device is dropped, untouched.
+    pub fn start_with(settings: Settings, session: Session, haptics: Option<Haptics>) -> Result<Self, ServeError> {
+        if let Some(haptics) = &haptics {
+            haptics.check(&session)?;
+        }
         // Connections are few, and the simulation wants the cores.
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(2)
@@ -76,9 +107,10 @@ impl Server {
         let listener = runtime.block_on(TcpListener::bind(wanted)).map_err(bind)?;
         let address = listener.local_addr().map_err(bind)?;
         let room = Room::new();
-        let stage = Stage::start(session, room.clone()).map_err(ServeError::Threads)?;
+        let (channel, reins) = haptics.map(Haptics::start).transpose()?.unzip();
+        let stage = Stage::start(session, room.clone(), reins).map_err(ServeError::Threads)?;
         let guard = Guard { allowed: settings.allowed_hosts };
-        let house = House { stage, room, number: number_of_this_run() };
+        let house = House { stage, room, number: number_of_this_run(), ping: settings.ping };
         let app = Router::new()
             .route("/ws", get(upgrade))
             .fallback(get(|uri: Uri| async move { page::file(&uri) }))
@@ -90,7 +122,7 @@ impl Server {
             let _ = axum::serve(listener, app).await;
             drop(stop);
         });
-        Ok(Self { address, runtime, stopped: Some(stopped) })
+        Ok(Self { address, channel, runtime, stopped })
     }
 
     /// Where it listens.
@@ -103,11 +135,32 @@ impl Server {
         page::missing()
     }
 
-    /// Serves until the program is ended.
-    pub fn wait(mut self) {
-        if let Some(stopped) = self.stopped.take() {
-            let _ = self.runtime.block_on(stopped);
-        }
+    /// Figures of the haptic channel, of a moment ago; none where there is no device, and in the first quarter of a second.
+    pub fn haptics(&self) -> Option<Statistics> {
+        self.channel.as_ref().and_then(Channel::statistics)
+    }
+
+    /// Whether a haptic device is at work.
+    pub fn has_haptics(&self) -> bool {
+        self.channel.as_ref().is_some_and(Channel::is_running)
+    }
+
+    /// Serves until `is_over` says so, which is asked twenty times a second.
+    pub fn serve_until(&mut self, is_over: impl Fn() -> bool) {
+        let Self { runtime, stopped, .. } = self;
+        runtime.block_on(async {
+            while !is_over() {
+                tokio::select! {
+                    _ = &mut *stopped => return,
+                    () = sleep(LOOK_UP) => {}
+                }
+            }
+        });
+    }
+
+    /// Ends: connections are closed, and the haptic device is released. Says how that fared, if there was one.
+    pub fn stop(self) -> Option<HapticsReport> {
+        self.channel.map(Channel::stop)
     }
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct HapticsArguments {
     /// How the force goes on between two samples of the simulation.
     #[arg(long, value_name = "HOW", value_parser = extrapolation, default_value = "linearised")]
     pub(crate) extrapolation: Extrapolation,
-    /// Also send the surface 60 times a second over a socket, as a page is served.
+    /// While the scene is served, and a client takes its frames as a page does, 60 a second.
     #[arg(long)]
     pub(crate) page: bool,
     /// Leave the channel's thread at ordinary priority.
@@ -72,7 +72,8 @@ impl HapticsArguments {
     }
 }
 
-fn extrapolation(text: &str) -> Result<Extrapolation, String> {
+/// How a channel goes on between samples of tissue that is stepped beside it.
+pub(crate) fn extrapolation(text: &str) -> Result<Extrapolation, String> {
     // `direct` needs tissue that is stepped within the channel.
     let known = || Extrapolation::ALL.into_iter().filter(|&how| how != Extrapolation::Direct);
     known().find(|how| how.name() == text).ok_or_else(|| {

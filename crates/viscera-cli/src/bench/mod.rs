@@ -4,10 +4,10 @@ pub(crate) mod arguments;
 mod capacity;
 mod haptics;
 mod organ;
+mod page;
 mod round;
 mod search;
 mod soak;
-mod viewer;
 
 use crate::failure::Failure;
 use arguments::BenchCommand;
