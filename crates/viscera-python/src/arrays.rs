@@ -1,13 +1,41 @@
 //! numpy arrays in and out: rows of three numbers are vectors, rows of nine are matrices.
 
-use numpy::ndarray::{Array1, Array2, Array3, ArrayViewD};
-use numpy::{AllowTypeChange, Element, PyArray1, PyArray2, PyArray3, PyArrayLikeDyn};
-use pyo3::exceptions::PyValueError;
+use numpy::ndarray::{Array1, Array2, Array3, ArrayViewD, Dimension};
+use numpy::{
+    AllowTypeChange, Element, PyArray1, PyArray2, PyArray3, PyArrayDyn, PyArrayLikeDyn, PyArrayMethods,
+    PyReadonlyArrayDyn, PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::{Borrowed, FromPyObject};
 use viscera::math::{Mat3, Scalar, Vec3};
 
-/// Numbers of any type, shape and stride, as `f64`.
-pub(crate) type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
+/// Numbers of any type, shape, stride and alignment, as `f64`.
+pub(crate) struct Numbers<'py>(PyReadonlyArrayDyn<'py, f64>);
+
+impl Numbers<'_> {
+    pub(crate) fn as_array(&self) -> ArrayViewD<'_, f64> {
+        self.0.as_array()
+    }
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Numbers<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let numbers: PyArrayLikeDyn<'py, f64, AllowTypeChange> = given.extract()?;
+        let array: &Bound<'py, PyArrayDyn<f64>> = &numbers;
+        // A field of a record steps by the bytes of the whole record: what is no multiple of a number's size, or begins between two
+        // numbers, cannot be looked at where it is.
+        let size = size_of::<f64>();
+        let in_steps = array.strides().iter().all(|stride| stride.unsigned_abs().is_multiple_of(size));
+        if in_steps && array.data().is_aligned() {
+            return Ok(Self((*numbers).clone()));
+        }
+        let copy = array.call_method0("copy")?.cast_into::<PyArrayDyn<f64>>()?;
+        Ok(Self(copy.readonly()))
+    }
+}
 
 /// A precision that numpy knows as well.
 pub(crate) trait NumpyScalar: Scalar + Element {}
@@ -101,22 +129,60 @@ where
     array.as_any().getattr("flags")?.setattr("writeable", false)
 }
 
+/// Whole numbers of any type, shape, stride and alignment; refused are fractions, which numpy would cut off, and masks.
+fn whole<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<PyReadonlyArrayDyn<'py, i64>> {
+    let array = given.py().import("numpy")?.call_method1("asarray", (given,))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    match kind.as_str() {
+        "i" | "u" => {}
+        "f" | "O" => all_whole(&array.extract()?, what)?,
+        "b" => {
+            return Err(PyTypeError::new_err(format!(
+                "{what} is a mask of True and False, and must hold whole numbers; numpy.flatnonzero makes them of it"
+            )));
+        }
+        _ => {
+            let kind = array.getattr("dtype")?;
+            return Err(PyTypeError::new_err(format!("{what} must hold whole numbers, and holds {kind}")));
+        }
+    }
+    Ok(array.call_method1("astype", ("int64",))?.cast_into::<PyArrayDyn<i64>>()?.readonly())
+}
+
+/// Refuses the first number that is none of those that floats count exactly.
+fn all_whole(numbers: &Numbers<'_>, what: &str) -> PyResult<()> {
+    const LARGEST: f64 = 9_007_199_254_740_992.0;
+    let view = numbers.as_array();
+    let fraction = view.indexed_iter().find(|(_, value)| value.fract() != 0.0 || value.abs() > LARGEST);
+    match fraction {
+        None => Ok(()),
+        Some((place, value)) => Err(PyValueError::new_err(format!(
+            "{what} holds {value:?} at {:?}, which is no whole number; round it where it is made, or give an array of integers",
+            place.slice()
+        ))),
+    }
+}
+
+/// A list of whole numbers from an array of any shape.
+pub(crate) fn indices(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u32>> {
+    whole(given, what)?.as_array().iter().map(|&value| index(value, what, "is no number of one")).collect()
+}
+
+fn index(value: i64, what: &str, fault: &str) -> PyResult<u32> {
+    u32::try_from(value).map_err(|_| PyValueError::new_err(format!("{what} holds {value}, which {fault}")))
+}
+
 /// Rows of whole numbers of an array of shape (n, N).
-pub(crate) fn index_rows<const N: usize>(
-    numbers: &PyArrayLikeDyn<'_, i64, AllowTypeChange>,
-    what: &str,
-) -> PyResult<Vec<[u32; N]>> {
+pub(crate) fn index_rows<const N: usize>(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
+    let numbers = whole(given, what)?;
     let view = numbers.as_array();
     if view.ndim() != 2 || view.shape()[1] != N {
         return Err(wrong_shape(what, &format!("(n, {N})"), view.shape()));
     }
-    let number = |&value: &i64| {
-        u32::try_from(value).map_err(|_| PyValueError::new_err(format!("{what} holds {value}, which numbers no node")))
-    };
-    let row = |row: numpy::ndarray::ArrayViewD<'_, i64>| -> PyResult<[u32; N]> {
+    let row = |row: ArrayViewD<'_, i64>| -> PyResult<[u32; N]> {
         let mut corners = [0; N];
-        for (corner, value) in corners.iter_mut().zip(row.iter()) {
-            *corner = number(value)?;
+        for (corner, &value) in corners.iter_mut().zip(row.iter()) {
+            *corner = index(value, what, "numbers no node")?;
         }
         Ok(corners)
     };

@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 use viscera::math::Vec3;
 
 use crate::arrays::{Numbers, index_rows, vectors};
-use crate::mesh::Integers;
 
 /// A camera that looks along `forward` from `eye`, with unit vectors to the right and up, scaled by the focal length in pixels.
 struct View {
@@ -73,14 +72,14 @@ impl View {
 pub(crate) fn depth_image<'py>(
     py: Python<'py>,
     positions: Numbers<'py>,
-    triangles: Integers<'py>,
+    triangles: &Bound<'py, PyAny>,
     eye: [f64; 3],
     target: [f64; 3],
     up: [f64; 3],
     field_of_view: f64,
     size: (usize, usize),
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let (positions, triangles) = (vectors(&positions, "positions")?, index_rows::<3>(&triangles, "triangles")?);
+    let (positions, triangles) = (vectors(&positions, "positions")?, index_rows::<3>(triangles, "triangles")?);
     if let Some(&node) = triangles.iter().flatten().find(|&&node| node as usize >= positions.len()) {
         return Err(PyValueError::new_err(format!("triangles name node {node}, and there are {}", positions.len())));
     }

@@ -19,6 +19,7 @@ mod report;
 mod scene;
 mod simulated;
 mod surface;
+mod toml_value;
 mod view;
 mod world;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn};
+use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -13,13 +13,10 @@ use viscera::mesh::{CubeCut, HexMesh, NamedRegion, TetMesh, TetQuality, TubeDivi
 use viscera_io::write::{Encoding, Grid, write_hex_msh, write_tet_msh, write_vtu};
 use viscera_io::{ImportedMesh, read_mesh, read_volume};
 
-use crate::arrays::{Numbers, index_array, index_rows, list_array, read_only, vector_array, vectors};
+use crate::arrays::{Numbers, index_array, index_rows, indices, list_array, read_only, vector_array, vectors};
 use crate::error::OrRaise;
 use crate::region::region;
 use crate::surface::PySurfaceMesh;
-
-/// Whole numbers of any type, shape and stride.
-pub(crate) type Integers<'py> = PyArrayLikeDyn<'py, i64, AllowTypeChange>;
 
 /// A mesh of tetrahedra (`TetMesh`) or hexahedra (`HexMesh`): nodes [m], cells, named regions.
 #[pyclass(frozen, subclass, name = "VolumeMesh", module = "viscera")]
@@ -65,15 +62,15 @@ fn named<const FACE: usize>(
         match parts.cast::<PyDict>() {
             Ok(parts) => {
                 let list = |key: &str| match parts.get_item(key)? {
-                    Some(list) => list.extract::<Integers<'_>>().and_then(|list| numbers(&list, key)),
+                    Some(list) => indices(&list, key),
                     None => Ok(Vec::new()),
                 };
                 (region.nodes, region.cells) = (list("nodes")?, list("cells")?);
                 if let Some(faces) = parts.get_item("faces")? {
-                    region.faces = index_rows(&faces.extract()?, "faces")?;
+                    region.faces = index_rows(&faces, "faces")?;
                 }
             }
-            Err(_) => region.nodes = numbers(&parts.extract()?, "nodes")?,
+            Err(_) => region.nodes = indices(&parts, "nodes")?,
         }
         let beyond = |list: &[u32], count: usize| list.iter().copied().find(|&number| number as usize >= count);
         let of_faces: Vec<u32> = region.faces.iter().flatten().copied().collect();
@@ -88,14 +85,6 @@ fn named<const FACE: usize>(
         regions.insert(name, region);
     }
     Ok(regions)
-}
-
-fn numbers(list: &Integers<'_>, what: &str) -> PyResult<Vec<u32>> {
-    let number = |&value: &i64| {
-        u32::try_from(value)
-            .map_err(|_| PyValueError::new_err(format!("{what} holds {value}, which is no number of one")))
-    };
-    list.as_array().iter().map(number).collect()
 }
 
 fn region_dict<'py, const FACE: usize>(
@@ -268,10 +257,10 @@ impl PyTetMesh {
     #[pyo3(signature = (nodes, cells, regions=None))]
     fn new(
         nodes: Numbers<'_>,
-        cells: Integers<'_>,
+        cells: &Bound<'_, PyAny>,
         regions: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let mut mesh = TetMesh::new(vectors(&nodes, "nodes")?, index_rows(&cells, "cells")?);
+        let mut mesh = TetMesh::new(vectors(&nodes, "nodes")?, index_rows(cells, "cells")?);
         mesh.check_indices().or_raise()?;
         mesh.regions = named(regions, mesh.nodes.len(), mesh.cells.len())?;
         Ok(PyClassInitializer::from(PyVolumeMesh::new(Arc::new(mesh.into()))).add_subclass(Self))
@@ -341,10 +330,10 @@ impl PyHexMesh {
     #[pyo3(signature = (nodes, cells, regions=None))]
     fn new(
         nodes: Numbers<'_>,
-        cells: Integers<'_>,
+        cells: &Bound<'_, PyAny>,
         regions: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let mut mesh = HexMesh::new(vectors(&nodes, "nodes")?, index_rows(&cells, "cells")?);
+        let mut mesh = HexMesh::new(vectors(&nodes, "nodes")?, index_rows(cells, "cells")?);
         mesh.check_indices().or_raise()?;
         mesh.regions = named(regions, mesh.nodes.len(), mesh.cells.len())?;
         Ok(PyClassInitializer::from(PyVolumeMesh::new(Arc::new(mesh.into()))).add_subclass(Self))

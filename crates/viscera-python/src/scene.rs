@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 use viscera::executor::Executor;
 use viscera_scene::file::{Precision, SceneFile};
 use viscera_scene::{Scene, SceneError, SceneErrors};
 
 use crate::error::{OrRaise, Raise};
+use crate::toml_value::toml;
 use crate::world::{AnyWorld, PyWorld};
 
 /// A scene file and its overrides. What is wrong is raised as `SceneError`, with the line itself.
@@ -56,14 +57,12 @@ impl PyScene {
         Scene::from_file(&file, folder).or_raise().map(|scene| Self { scene })
     }
 
-    /// Sets the value of a dotted key, such as "body.liver.law.young" to "8 kPa"; entries of lists have numbers from 0.
+    /// Sets the value of a dotted key, such as "body.liver.law.young" to "8 kPa"; entries of lists have numbers from 0. A text is read as in
+    /// a scene file; numbers, truth values, lists, tuples, dicts and numpy's numbers and arrays are what they are.
     fn set(&mut self, key: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let text: String = match value.extract::<String>() {
-            Ok(text) => text,
-            Err(_) => match value.extract::<bool>() {
-                Ok(truth) => truth.to_string(),
-                Err(_) => value.repr()?.extract()?,
-            },
+        let text = match value.cast::<PyString>() {
+            Ok(text) => text.to_cow()?.into_owned(),
+            Err(_) => toml(value)?,
         };
         self.scene.set(key, &text).or_raise()
     }

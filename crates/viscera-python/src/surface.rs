@@ -6,7 +6,6 @@ use viscera::mesh::SurfaceMesh;
 
 use crate::arrays::{Numbers, index_array, index_rows, vector_array, vectors};
 use crate::error::OrRaise;
-use crate::mesh::Integers;
 
 /// Triangles in space: the skin of an organ.
 #[pyclass(frozen, name = "SurfaceMesh", module = "viscera")]
@@ -24,8 +23,8 @@ impl PySurfaceMesh {
 impl PySurfaceMesh {
     /// From arrays: `nodes` [m] of shape (n, 3), `triangles` of shape (m, 3), counter-clockwise seen from outside.
     #[new]
-    fn from_arrays(nodes: Numbers<'_>, triangles: Integers<'_>) -> PyResult<Self> {
-        let mesh = SurfaceMesh { nodes: vectors(&nodes, "nodes")?, triangles: index_rows(&triangles, "triangles")? };
+    fn from_arrays(nodes: Numbers<'_>, triangles: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let mesh = SurfaceMesh { nodes: vectors(&nodes, "nodes")?, triangles: index_rows(triangles, "triangles")? };
         mesh.check().or_raise()?;
         Ok(Self { mesh })
     }

@@ -72,26 +72,53 @@ class _Case:
 
 
 def cases(parameters: Mapping[str, Iterable] | Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """All combinations of values by dotted key, the last key's changing fastest; or the cases themselves, if they are given."""
-    if isinstance(parameters, Mapping):
-        values = [list(values) for values in parameters.values()]
-        return [dict(zip(parameters, combination)) for combination in itertools.product(*values)]
-    return [dict(case) for case in parameters]
+    """All combinations of values by dotted key, the last key's changing fastest; or the cases themselves, if they are given.
+
+    Values of numpy's become Python's, and tuples lists: what stands in the table is what every format of it knows.
+    """
+    if not isinstance(parameters, Mapping):
+        return [{key: _plain(value) for key, value in case.items()} for case in parameters]
+    values = []
+    for key, given in parameters.items():
+        if isinstance(given, str) or not isinstance(given, Iterable):
+            raise TypeError(f"the values of `{key}` are {given!r}: give them as a list, also where there is one")
+        values.append([_plain(value) for value in given])
+    return [dict(zip(parameters, combination)) for combination in itertools.product(*values)]
+
+
+def _plain(value: Any) -> Any:
+    """The value without numpy's types and without tuples."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value
+
+
+def _changed(case: _Case) -> Scene:
+    """The scene with the changes of the case, its keys, types, units and ranges checked."""
+    scene = Scene.parse(case.text, case.folder)
+    for key, value in case.changes:
+        scene.set(key, value)
+    scene.check()
+    return scene
 
 
 def _run(case: _Case) -> dict[str, Any]:
-    """Runs a case to its end; what the engine refuses stands in the row's `error`."""
-    row = dict(case.changes)
+    """Runs a case to its end; what the engine refuses, and what `measure` raises, stands in the row's `error`."""
+    row: dict[str, Any] = dict(case.changes) | {"time": None, "error": None}
     try:
-        scene = Scene.parse(case.text, case.folder)
-        for key, value in case.changes:
-            scene.set(key, value)
-        world, steps, _ = scene.build()
+        world, steps, _ = _changed(case).build()
         world.steps(steps)
-        row.update(time=world.time, error=None, **(case.measure or observables)(world))
-    except Error as error:
-        row.update(time=None, error=str(error))
-    return row
+    except (Error, TypeError, ValueError, OSError) as error:
+        return row | {"error": str(error)}
+    row["time"] = world.time
+    try:
+        return row | dict((case.measure or observables)(world))
+    except Exception as error:
+        return row | {"error": f"measure raised {type(error).__name__}: {error}"}
 
 
 def observables(world: World) -> dict[str, Any]:
@@ -127,9 +154,11 @@ def sweep(
     """Runs a scene to its end for every case and gives a table, one row for each.
 
     ``scene``: a `Scene`, or the path of a scene file. ``parameters``: values by dotted key, such as
-    ``{"body.liver.law.young": ["2 kPa", "4 kPa"]}``, in all combinations; or a list of cases, each a dict. ``measure`` makes of the world
-    at the end what stands in the row; by default `observables`. Columns are the parameters, `time` [s] and `error` (the engine's text
-    where it refused a case, else None), and what was measured.
+    ``{"body.liver.law.young": ["2 kPa", "4 kPa"]}``, in all combinations; or a list of cases, each a dict. Values are what `Scene.set` takes:
+    texts with units, numbers [SI], lists, dicts, ``numpy.linspace(...)``. ``measure`` makes of the world at the end what stands in the row;
+    by default `observables`. Columns are the parameters, `time` [s] and `error` (the engine's text where it refused a case, or what
+    ``measure`` raised, else None), and what was measured. A first case that the scene refuses raises at once: a key that is wrong is
+    wrong in all of them.
 
     With ``client``, a `dask.distributed.Client`, cases run on its workers, which must see the files that the scene names. A case whose
     worker dies runs again on another, up to ``retries`` times; its row stands in the table once. Without it they run on
@@ -139,6 +168,8 @@ def sweep(
         scene = Scene.load(Path(scene))
     text, folder = scene.to_toml(), scene.folder
     todo = [_Case(text, folder, tuple(case.items()), measure) for case in cases(parameters)]
+    if todo:
+        _changed(todo[0])
     if client is None:
         with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
             return Table(list(pool.map(_run, todo)))
