@@ -1,10 +1,10 @@
 //! Laws, with their parameters, and what they make of a deformation.
 
 use numpy::{PyArray1, PyArray3};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscera::material::{LawFamily, LawKind, LawVisitor, Tissue, TissuePreset};
+use viscera::material::{LawFamily, LawKind, LawVisitor, MaterialError, RestStiffness, Tissue, TissuePreset};
 use viscera::math::Mat3;
 
 use crate::arrays::{Numbers, list_array, matrices, matrix_array};
@@ -101,6 +101,14 @@ impl LawVisitor for Parameters {
     type Output = &'static [viscera::material::Parameter];
     fn visit<L: LawFamily>(self) -> Self::Output {
         L::PARAMETERS
+    }
+}
+
+struct AtRest<'a>(&'a [f64]);
+impl LawVisitor for AtRest<'_> {
+    type Output = RestStiffness;
+    fn visit<L: LawFamily>(self) -> RestStiffness {
+        L::from_values(self.0).at_rest()
     }
 }
 
@@ -314,7 +322,7 @@ impl PyTissue {
     }
 
     /// One law for each cell, by its parameters: the law's name, and an array of shape (cells, parameters) in the order of
-    /// `Law.parameters`.
+    /// `Law.parameters`. Raises ValueError for the first cell whose values no tissue has.
     #[staticmethod]
     fn from_values(kind: &str, values: Numbers<'_>) -> PyResult<Self> {
         let law = Law::example(kind)?.kind;
@@ -325,6 +333,9 @@ impl PyTissue {
             return Err(pyo3::exceptions::PyValueError::new_err(message));
         }
         let rows: Vec<Vec<f64>> = view.outer_iter().map(|row| row.iter().copied().collect()).collect();
+        for (cell, row) in rows.iter().enumerate() {
+            check(law, row).map_err(|reason| PyValueError::new_err(format!("values of cell {cell}: {reason}")))?;
+        }
         law.visit(PerCell(&rows)).or_raise().map(Self)
     }
 
@@ -340,10 +351,44 @@ impl PyTissue {
         self.0.is_uniform()
     }
 
-    /// Parameter values of the law in a cell, in the order of `Law.parameters`.
-    fn values<'py>(&self, py: Python<'py>, cell: usize) -> Bound<'py, PyArray1<f64>> {
-        list_array(py, self.0.values(cell).to_vec())
+    /// Parameter values of the law in a cell, in the order of `Law.parameters`; the same for every cell where the tissue is uniform.
+    /// Raises IndexError for a cell that has no law.
+    fn values<'py>(&self, py: Python<'py>, cell: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        // Tissues tell their number of laws by refusing meshes of another one.
+        if self.0.is_uniform() {
+            return Ok(list_array(py, self.0.values(0).to_vec()));
+        }
+        match self.0.check_count(usize::MAX) {
+            Err(MaterialError::WrongCount { given, .. }) if cell >= given => {
+                let last = given - 1;
+                Err(PyIndexError::new_err(format!("there is no law for cell {cell}: they are numbered 0 to {last}")))
+            }
+            _ => Ok(list_array(py, self.0.values(cell).to_vec())),
+        }
     }
+}
+
+/// Refuses what the constructors of laws refuse: parameters with which tissue would bear some load without resistance.
+fn check(law: LawKind, values: &[f64]) -> Result<(), String> {
+    for (parameter, value) in law.visit(Parameters).iter().zip(values) {
+        if !value.is_finite() {
+            return Err(format!("{} = {value} is no finite number", parameter.name));
+        }
+    }
+    let rest = law.visit(AtRest(values));
+    let lame = viscera::material::Lame::new(rest.lame.lambda, rest.lame.mu).map_err(|error| error.to_string())?;
+    let length = rest.direction.norm();
+    if (length - 1.0).abs() > 1e-6 {
+        return Err(format!("the fibre direction has the length {length}: divide its components by it"));
+    }
+    if lame.young() + 2.0 * rest.fibre_stiffness <= 0.0 {
+        return Err(format!(
+            "fibre-stiffness = {} is out of range: it must be above -E/2 = {} Pa; make the fibres stiffer or the matrix softer",
+            rest.fibre_stiffness,
+            -0.5 * lame.young()
+        ));
+    }
+    Ok(())
 }
 
 /// A tissue, or a law that holds everywhere.

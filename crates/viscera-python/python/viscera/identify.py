@@ -27,6 +27,8 @@ from ._viscera import Body, Error, Implicit, World
 
 #: Share of a parameter by which it is varied for ∂f/∂p: rounding (1e-16/h) and truncation (h²) meet near it.
 _VARIATION = 1e-5
+#: What gradients are off by, as a share of the largest.
+_GRADIENT_ERROR = 1e-9
 
 Parameters = Mapping[str, float]
 BodyOf = Callable[[Parameters], Body]
@@ -203,9 +205,11 @@ class Fit:
 
     #: Values by name.
     parameters: dict[str, float]
-    #: Standard errors by name: the roots of the covariance's diagonal.
+    #: Standard errors by name, in the units of the parameters: the roots of the covariance's diagonal. Infinite for what the measurements say
+    #: nothing about, alone or together with others; NaN for what a bound holds.
     standard_errors: dict[str, float]
-    #: Covariance s² (JᵀJ)⁻¹ in the order of `parameters`, with s² the scatter of the residuals, or 1 where deviations were given.
+    #: Covariance s² (JᵀJ)⁻¹ in the order of `parameters`, with s² the scatter of the residuals, or 1 where deviations were given. What a bound
+    #: holds is taken as known: its rows are 0. Between parameters of infinite error and others it is NaN.
     covariance: np.ndarray
     #: Residuals over their deviations at the end.
     residuals: np.ndarray
@@ -213,12 +217,66 @@ class Fit:
     costs: list[float]
     #: Whether the last step was below the tolerance.
     converged: bool
-    #: Parameters that ended at one of their bounds; their errors say nothing.
+    #: Parameters that ended at one of their bounds.
     at_bound: list[str]
 
     def __str__(self):
-        lines = [f"{name} = {value:.6g} ± {self.standard_errors[name]:.2g}" for name, value in self.parameters.items()]
+        def error(name):
+            found = self.standard_errors[name]
+            return "held by its bound" if np.isnan(found) else "not identifiable" if np.isinf(found) else f"± {found:.2g}"
+
+        lines = [f"{name} = {value:.6g} {error(name)}" for name, value in self.parameters.items()]
         return "\n".join([*lines, f"{len(self.costs) - 1} iterations, {'converged' if self.converged else 'not converged'}"])
+
+
+def _without_effect(norms: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Which parameters change the residuals, if they change by their own size, by less than gradients are off."""
+    effect = norms * size
+    return (norms == 0) | ((size > 0) & (effect <= _GRADIENT_ERROR * effect.max(initial=0.0)))
+
+
+def _covariance(jacobian: np.ndarray, residuals: np.ndarray, free: np.ndarray, size: np.ndarray, known_deviations: bool) -> np.ndarray:
+    """Covariance of the parameters: of the `free` ones where those that a bound holds are known.
+
+    Columns are brought to length one first, so that it does not depend on units. What changes the residuals by less than the gradients'
+    own error is not identifiable: its variance is infinite.
+    """
+    count = len(free)
+    covariance = np.zeros((count, count))
+    norms = np.linalg.norm(jacobian, axis=0)
+    blind = free & _without_effect(norms, size)
+    seen = np.flatnonzero(free & ~blind)
+    rank = 0
+    if seen.size:
+        _, values, directions = np.linalg.svd(jacobian[:, seen] / norms[seen], full_matrices=False)
+        values, directions = np.pad(values, (0, max(0, seen.size - values.size))), _completed(directions, seen.size)
+        null = values <= 10 * _GRADIENT_ERROR * values[0]
+        rank = int(np.sum(~null))
+        loose = np.abs(directions[null]).max(axis=0, initial=0.0) > 1e-5
+        blind[seen[loose]] = True
+        spread = directions[~null] / values[~null, None]
+        covariance[np.ix_(seen, seen)] = spread.T @ spread / np.outer(norms[seen], norms[seen])
+    freedom = len(residuals) - rank
+    if known_deviations:
+        variance = 1.0
+    elif freedom > 0:
+        variance = float(residuals @ residuals) / freedom
+    else:
+        # As many parameters as measurements: nothing is left that would scatter.
+        variance, blind = 1.0, free.copy()
+    covariance *= variance
+    covariance[blind] = np.nan
+    covariance[:, blind] = np.nan
+    covariance[blind, blind] = np.inf
+    return covariance
+
+
+def _completed(directions: np.ndarray, count: int) -> np.ndarray:
+    """All directions: those that fewer measurements than parameters leave out span the rest."""
+    if len(directions) == count:
+        return directions
+    _, _, all_directions = np.linalg.svd(directions)
+    return np.vstack([directions, all_directions[len(directions) :]])
 
 
 def fit(
@@ -243,6 +301,7 @@ def fit(
     low = np.array([bounds.get(name, (-np.inf, np.inf))[0] for name in names], dtype=float)
     high = np.array([bounds.get(name, (-np.inf, np.inf))[1] for name in names], dtype=float)
     theta = np.array([start[name] for name in names], dtype=float)
+    begun = np.abs(theta)
     if np.any(theta < low) or np.any(theta > high):
         raise ValueError("the start lies outside of the bounds")
 
@@ -257,15 +316,18 @@ def fit(
         gradient = jacobian.T @ residuals
         # What lies at a bound and is drawn beyond it takes no part in the step.
         free = ~(((theta <= low) & (gradient > 0)) | ((theta >= high) & (gradient < 0)))
-        hessian, scale = jacobian.T @ jacobian, np.sum(jacobian**2, axis=0)
-        if not np.any(free & (scale > 0)):
+        norms = np.linalg.norm(jacobian, axis=0)
+        active = np.flatnonzero(free & ~_without_effect(norms, np.maximum(np.abs(theta), begun)))
+        if not active.size:
             converged = True
             break
+        # Columns of length one: parameters of 10 kPa and of 1 mm weigh the same.
+        columns = jacobian[:, active] / norms[active]
+        hessian = columns.T @ columns
         while True:
-            active = np.flatnonzero(free & (scale > 0))
             step = np.zeros_like(theta)
-            matrix = hessian[np.ix_(active, active)] + damping * np.diag(scale[active])
-            step[active] = -np.linalg.solve(matrix, gradient[active])
+            matrix = hessian + damping * np.eye(active.size)
+            step[active] = -np.linalg.solve(matrix, gradient[active] / norms[active]) / norms[active]
             trial = np.clip(theta + step, low, high)
             change = np.max(np.abs(trial - theta) / np.maximum(np.abs(theta), np.finfo(float).tiny))
             try:
@@ -284,11 +346,10 @@ def fit(
                 iterations = 0
                 break
             damping *= 11
-    hessian = jacobian.T @ jacobian
-    freedom = max(len(residuals) - len(theta), 1)
-    variance = 1.0 if known_deviations else float(residuals @ residuals) / freedom
-    covariance = variance * np.linalg.pinv(hessian)
-    errors = np.sqrt(np.clip(np.diag(covariance), 0, None))
+    gradient = jacobian.T @ residuals
+    held = ((theta <= low) & (gradient > 0)) | ((theta >= high) & (gradient < 0))
+    covariance = _covariance(jacobian, residuals, ~held, np.maximum(np.abs(theta), begun), known_deviations)
+    errors = np.where(held, np.nan, np.sqrt(np.diag(covariance)))
     return Fit(
         parameters=dict(zip(names, theta.tolist())),
         standard_errors=dict(zip(names, errors.tolist())),

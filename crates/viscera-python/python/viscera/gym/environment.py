@@ -6,7 +6,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium.vector.utils import batch_space
+from gymnasium.vector.utils import batch_space, concatenate, create_empty_array
 
 import viscera
 
@@ -14,16 +14,19 @@ from .episode import Episode, Settings
 from .tasks import TASKS
 
 
-def _spaces(task: type[Episode], settings: Settings):
+def _spaces(task: type[Episode], settings: Settings) -> tuple[gymnasium.Space, gymnasium.Space]:
     """What is seen and done."""
-    if settings.observation == "points":
-        seen = gymnasium.spaces.Box(-5.0, 5.0, (settings.points, 3), np.float32)
-    elif settings.observation == "depth":
-        width, height = settings.image
-        seen = gymnasium.spaces.Box(0.0, 5.0, (height, width), np.float32)
-    else:
-        seen = gymnasium.spaces.Box(-10.0, 10.0, (9 + 3 * task.tracked + 4,), np.float32)
-    return seen, gymnasium.spaces.Box(-1.0, 1.0, (task.actions,), np.float32)
+    box = gymnasium.spaces.Box
+    doing = box(-1.0, 1.0, (task.actions,), np.float32)
+    if settings.observation == "state":
+        return box(-10.0, 10.0, (9 + 3 * task.tracked + 4,), np.float32), doing
+    width, height = settings.image
+    pictures = {
+        "points": box(-5.0, 5.0, (settings.points, 3), np.float32),
+        "depth": box(0.0, 5.0, (height, width), np.float32),
+    }
+    numbers = {"tool": box(-10.0, 10.0, (10,), np.float32), "goal": box(-5.0, 5.0, (3,), np.float32)}
+    return gymnasium.spaces.Dict({settings.observation: pictures[settings.observation], **numbers}), doing
 
 
 def _task(name: str) -> type[Episode]:
@@ -107,5 +110,6 @@ class TissueVectorEnv(gymnasium.vector.VectorEnv):
         self._ended = terminated | truncated
         return self._observe(), rewards, terminated, truncated, infos
 
-    def _observe(self) -> np.ndarray:
-        return np.stack([episode.observe() for episode in self.episodes])
+    def _observe(self) -> Any:
+        seen = create_empty_array(self.single_observation_space, n=self.num_envs)
+        return concatenate(self.single_observation_space, [episode.observe() for episode in self.episodes], seen)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,8 @@ class Settings:
     horizon: int = 200
     #: How fast the tip moves at an action of 1 [m/s].
     speed: float = 0.2
-    #: "state" (numbers), "points" (points of the surface, seen from nowhere in particular) or "depth" (a picture of distances).
+    #: "state" (numbers), "points" (points of the surface, seen from nowhere in particular) or "depth" (a picture of distances). With points and
+    #: pictures come, as a dict, the numbers of the tool and of the goal, which neither of them shows.
     observation: str = "state"
     #: How many points a cloud has.
     points: int = 128
@@ -150,16 +152,20 @@ class Episode:
         # A step that the engine refused ends the episode: the world is as it was before it.
         return float(reward - beyond), bool(done or failure is not None), self.steps >= self.settings.horizon, info
 
-    def observe(self) -> np.ndarray:
-        """What the agent sees."""
-        if self.settings.observation == "points":
-            return self._scaled(self.positions[self.seen[: self.settings.points]])
-        if self.settings.observation == "depth":
-            return self._depth()
-        tool = np.concatenate([self.tip, self.instrument.tip, self.goal()])
-        tracked = self.positions[self.seen[: self.tracked]].ravel()
+    def observe(self) -> Any:
+        """What the agent sees: one array of numbers, or a dict of the picture or points under their name, `tool` and `goal`.
+
+        `tool` is where the tip was sent and where it is [over `extent`], its force [over `Settings.force_limit`], and the trigger.
+        """
+        kind = self.settings.observation
+        goal = self._scaled(self.goal())
         force = np.clip(self.force / self.settings.force_limit, -10, 10)
-        return np.concatenate([self._scaled(tool), self._scaled(tracked), force, [self.trigger]]).astype(np.float32)
+        tip = self._scaled(np.concatenate([self.tip, self.instrument.tip]))
+        if kind == "state":
+            tracked = self._scaled(self.positions[self.seen[: self.tracked]].ravel())
+            return np.concatenate([tip, goal, tracked, force, [self.trigger]]).astype(np.float32)
+        seen = self._depth() if kind == "depth" else self._scaled(self.positions[self.seen[: self.settings.points]])
+        return {kind: seen, "tool": np.concatenate([tip, force, [self.trigger]]).astype(np.float32), "goal": goal}
 
     def _scaled(self, places) -> np.ndarray:
         return np.clip(np.asarray(places) / self.extent, -5, 5).astype(np.float32)
