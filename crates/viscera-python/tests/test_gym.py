@@ -1,12 +1,11 @@
 """Environments: Gymnasium's own checker, seeds to the bit, threads that change nothing, and goals that can be reached."""
 
+import gymnasium
 import numpy as np
 import pytest
 
-gymnasium = pytest.importorskip("gymnasium")
-
-import viscera.gym  # noqa: E402  (registers the environments)
-from gymnasium.utils.env_checker import check_env  # noqa: E402
+import viscera.gym
+from gymnasium.utils.env_checker import check_env
 
 SMALL = {"cells": 400, "horizon": 30}
 
@@ -57,7 +56,7 @@ def test_material_and_shape_are_drawn_anew_for_each_episode():
     drawn = []
     for _ in range(4):
         env.reset(seed=None if drawn else 1)
-        drawn.append((env.episode.young, *env.episode.sides))
+        drawn.append((env.episode.drawn.young, *env.episode.drawn.sides))
     assert len(set(drawn)) == 4
     assert all(3e3 <= young <= 9e3 for young, *_ in drawn)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gymnasium
@@ -35,15 +36,21 @@ def _task(name: str) -> type[Episode]:
     return TASKS[name]
 
 
+def _render_mode(given: str | None) -> str | None:
+    if given not in (None, "rgb_array"):
+        raise ValueError(f"render_mode = `{given}`: there is `rgb_array`")
+    return given
+
+
 class TissueEnv(gymnasium.Env):
     """One task. Actions are velocities of the tip over `Settings.speed`, and the trigger from −1 (open, off) to 1 (closed, on)."""
 
-    metadata = {"render_modes": ["depth"], "render_fps": 25}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 25}
 
     def __init__(self, task: str = "Reach", *, render_mode: str | None = None, **settings: Any):
         self.settings, kind = Settings(**settings), _task(task)
         self.observation_space, self.action_space = _spaces(kind, self.settings)
-        self.episode, self.render_mode = kind(self.settings), render_mode
+        self.episode, self.render_mode = kind(self.settings), _render_mode(render_mode)
 
     def reset(self, *, seed: int | None = None, options: dict | None = None):
         super().reset(seed=seed)
@@ -61,46 +68,82 @@ class TissueEnv(gymnasium.Env):
         return self.episode.observe(), reward, terminated, truncated, info
 
     def render(self):
-        """The depth picture, as grey levels of 8 bits; near is bright."""
-        depth = self.episode._depth()
-        near, far = float(depth.min()), float(depth[depth < 5].max(initial=depth.min()))
-        grey = np.where(depth < 5, 255 - 200 * (depth - near) / max(far - near, 1e-6), 0).clip(0, 255)
-        return np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)
+        """The depth picture, as grey levels of 8 bits of shape (height, width, 3); near is bright."""
+        return self.episode.picture()
 
 
 class TissueVectorEnv(gymnasium.vector.VectorEnv):
-    """Many environments of one task, stepped by threads of the engine. Environments that end begin anew in the next step."""
+    """Many environments of one task, stepped and begun anew by threads. Environments that end begin anew in the next step."""
 
-    metadata = {"autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
+    metadata = {"autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP, "render_modes": ["rgb_array"], "render_fps": 25}
 
     def __init__(self, num_envs: int = 1, task: str = "Reach", *, threads: int = 0, render_mode: str | None = None, **settings: Any):
+        self.threads = viscera.Threads(threads)
+        self._pool = ThreadPoolExecutor(self.threads.count)
         self.settings, kind = Settings(**settings), _task(task)
-        self.num_envs, self.render_mode = num_envs, render_mode
+        self.num_envs, self.render_mode = num_envs, _render_mode(render_mode)
         self.single_observation_space, self.single_action_space = _spaces(kind, self.settings)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.episodes = [kind(self.settings) for _ in range(num_envs)]
-        self.threads = viscera.Threads(threads)
         self._generators: list[np.random.Generator] = []
         self._ended = np.zeros(num_envs, dtype=bool)
 
     def reset(self, *, seed: int | list[int | None] | None = None, options: dict | None = None):
-        if seed is not None or not self._generators:
-            first = seed if seed is not None else int(np.random.default_rng().integers(2**31))
-            seeds = first if isinstance(first, list) else [first + number for number in range(self.num_envs)]
-            self._generators = [gymnasium.utils.seeding.np_random(each)[0] for each in seeds]
-        for episode, rng in zip(self.episodes, self._generators):
-            episode.reset(rng)
-        self._ended[:] = False
+        """Begins anew: all, or where ``options={"reset_mask": mask}`` says so (bool, one for each). A seed of an int gives each
+        environment its own (seed, seed + 1, …); in a list, None goes on with the generator that the environment has."""
+        mask = self._mask((options or {}).get("reset_mask"))
+        self._seed(seed, mask)
+        self._begin(np.flatnonzero(mask))
+        self._ended[mask] = False
         return self._observe(), {}
+
+    def _mask(self, given) -> np.ndarray:
+        """Which environments begin anew."""
+        if given is None:
+            return np.ones(self.num_envs, dtype=bool)
+        mask = np.asarray(given)
+        if mask.dtype != bool or mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"reset_mask must be {self.num_envs} truth values, at least one of them true, and has shape {mask.shape} of {mask.dtype}"
+            )
+        if not (mask.all() or self._generators):
+            raise ValueError("reset_mask leaves environments out that have not begun: reset all of them first")
+        return mask
+
+    def _seed(self, seed: int | list[int | None] | None, mask: np.ndarray) -> None:
+        """Gives new generators to those that begin anew, where a seed says so or they have none."""
+        if seed is None and not self._generators:
+            seed = int(np.random.default_rng().integers(2**31))
+        if isinstance(seed, int | np.integer):
+            seed = [int(seed) + number for number in range(self.num_envs)]
+        if seed is None:
+            return
+        if len(seed) != self.num_envs:
+            raise ValueError(f"seed has {len(seed)} entries, and there are {self.num_envs} environments")
+        if not self._generators:
+            self._generators = [gymnasium.utils.seeding.np_random(each)[0] for each in seed]
+        for number in np.flatnonzero(mask):
+            if seed[number] is not None:
+                self._generators[number] = gymnasium.utils.seeding.np_random(seed[number])[0]
+
+    def _begin(self, numbers) -> None:
+        """New episodes, on as many threads as step them: the engine lets others run while it builds, restores and steps."""
+        list(self._pool.map(lambda number: self.episodes[number].reset(self._generators[number]), numbers))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        self._pool.shutdown()
+
+    def render(self) -> tuple[np.ndarray, ...]:
+        """The depth picture of each, as grey levels of 8 bits of shape (height, width, 3); near is bright."""
+        return tuple(episode.picture() for episode in self.episodes)
 
     def step(self, actions):
         going = np.flatnonzero(~self._ended)
         rewards = np.zeros(self.num_envs)
         terminated, truncated = np.zeros(self.num_envs, dtype=bool), np.zeros(self.num_envs, dtype=bool)
         infos: dict[str, Any] = {}
-        for number in np.flatnonzero(self._ended):
-            self.episodes[number].reset(self._generators[number])
+        self._begin(np.flatnonzero(self._ended))
         for number in going:
             self.episodes[number].command(actions[number])
         failures = self.threads.step([self.episodes[number].world for number in going], 1)

@@ -31,9 +31,15 @@ class Settings:
     image: tuple[int, int] = (64, 64)
     #: Young's modulus is drawn from this range [Pa], evenly in its logarithm.
     young: tuple[float, float] = (3e3, 9e3)
+    #: Poisson's ratio is drawn from this range, evenly; so are the density [kg/m³] and the damping rate of the body [1/s].
+    poisson: tuple[float, float] = (0.45, 0.45)
+    density: tuple[float, float] = (1060.0, 1060.0)
+    damping: tuple[float, float] = (10.0, 10.0)
+    #: Edges of the tetrahedra [m], of which one is drawn; where none are given, the mesh is the one of `cells`.
+    edges: tuple[float, ...] = ()
     #: The body's sides vary by up to this share, each for itself.
     shape: float = 0.08
-    #: Whether material and shape are drawn anew for each episode; else they stay at the middle of their ranges, and a reset is quick.
+    #: Whether material, shape and mesh are drawn anew for each episode; else they stay at the middle of their ranges, and a reset is quick.
     randomise: bool = True
     #: Force of the tool that does harm [N]; what goes beyond it, over time, is `damage`.
     force_limit: float = 2.0
@@ -43,8 +49,34 @@ class Settings:
             raise ValueError(f"observation = `{self.observation}`: there are `state`, `points`, `depth`")
         if not (self.control_step > 0 and self.horizon > 0 and self.cells > 0 and 0 < self.young[0] <= self.young[1]):
             raise ValueError("control_step, horizon, cells and young must be positive, and young ascend")
+        for name in ("poisson", "density", "damping"):
+            low, high = getattr(self, name)
+            if not low <= high:
+                raise ValueError(f"{name} = ({low}, {high}) must ascend; for one value give it twice")
+        if not (-1 < self.poisson[0] and self.poisson[1] < 0.5 and self.density[0] > 0 and self.damping[0] >= 0):
+            raise ValueError("poisson must lie above -1 and below 0.5, density be positive, and damping not negative")
+        if not all(edge > 0 for edge in self.edges):
+            raise ValueError(f"edges = {self.edges} must be positive [m]")
         if not 0 <= self.shape < 0.5:
             raise ValueError(f"shape = {self.shape} must lie between 0 and 0.5")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What was drawn for an episode."""
+
+    #: Young's modulus [Pa].
+    young: float
+    #: Poisson's ratio.
+    poisson: float
+    #: Density [kg/m³].
+    density: float
+    #: Rate of the body's damping [1/s].
+    damping: float
+    #: Edge of the tetrahedra [m], None where their number was asked for.
+    edge: float | None
+    #: Factors of the body's sides; shape (3,).
+    sides: np.ndarray
 
 
 class Episode:
@@ -67,8 +99,8 @@ class Episode:
 
     # What a task says.
 
-    def mesh(self) -> viscera.TetMesh:
-        """The body at rest, at the middle of its shapes."""
+    def mesh(self, edge: float | None) -> viscera.TetMesh:
+        """The body at rest, at the middle of its shapes: of tetrahedra of about `edge` [m], or of `Settings.cells` of them."""
         raise NotImplementedError
 
     def held(self) -> viscera.Region:
@@ -96,13 +128,11 @@ class Episode:
     def reset(self, rng: np.random.Generator) -> None:
         """Begins anew: the same generator's state gives the same episode, to the bit."""
         settings = self.settings
-        low, high = np.log(settings.young)
-        share, sides = rng.uniform(), rng.uniform(-1, 1, size=3)
+        drawn = self._draw(rng)
         if settings.randomise:
-            young = float(np.exp(low + share * (high - low)))
-            self._build(young, 1 + settings.shape * sides)
+            self._build(drawn)
         elif self._start is None:
-            self._build(float(np.exp(0.5 * (low + high))), np.ones(3))
+            self._build(self._middle())
             self._start = self.world.snapshot()
         else:
             self.world.restore(self._start)
@@ -114,17 +144,56 @@ class Episode:
         self.instrument.lead(self.tip.tolist(), direction=self.direction)
         self.world.step()
 
-    def _build(self, young: float, sides: np.ndarray) -> None:
-        mesh = self.mesh()
-        mesh = mesh.with_nodes(mesh.nodes * sides)
-        tissue = viscera.StableNeoHookean.from_young_poisson(young, 0.45)
+    def _draw(self, rng: np.random.Generator) -> Drawn:
+        """Material, shape and mesh of an episode. A range of one value takes nothing from the generator."""
+        settings = self.settings
+        low, high = np.log(settings.young)
+        share, sides = rng.uniform(), rng.uniform(-1, 1, size=3)
+
+        def among(span: tuple[float, float]) -> float:
+            return span[0] if span[0] == span[1] else float(rng.uniform(*span))
+
+        poisson, density, damping = among(settings.poisson), among(settings.density), among(settings.damping)
+        edges = settings.edges
+        edge = edges[int(rng.integers(len(edges)))] if len(edges) > 1 else next(iter(edges), None)
+        return Drawn(
+            young=float(np.exp(low + share * (high - low))),
+            poisson=poisson,
+            density=density,
+            damping=damping,
+            edge=edge,
+            sides=1 + settings.shape * sides,
+        )
+
+    def _middle(self) -> Drawn:
+        """The middle of all ranges."""
+        settings = self.settings
+        return Drawn(
+            young=float(np.exp(0.5 * np.sum(np.log(settings.young)))),
+            poisson=0.5 * sum(settings.poisson),
+            density=0.5 * sum(settings.density),
+            damping=0.5 * sum(settings.damping),
+            edge=sorted(settings.edges)[len(settings.edges) // 2] if settings.edges else None,
+            sides=np.ones(3),
+        )
+
+    def _build(self, drawn: Drawn) -> None:
+        mesh = self.mesh(drawn.edge)
+        mesh = mesh.with_nodes(mesh.nodes * drawn.sides)
+        tissue = viscera.StableNeoHookean.from_young_poisson(drawn.young, drawn.poisson)
         # The shape of an organ in a picture has gravity in it already: none is added.
         self.world = viscera.World(gravity=[0.0, 0.0, 0.0], step=self.settings.control_step, precision="single")
         description = viscera.Body(
-            mesh, 1060.0, model=viscera.TotalLagrangian(tissue), fix=self.held(), damping=10.0, loose_pieces="drop", name="tissue"
+            mesh,
+            drawn.density,
+            model=viscera.TotalLagrangian(tissue),
+            fix=self.held(),
+            damping=drawn.damping,
+            loose_pieces="drop",
+            name="tissue",
         )
         self.body = self.world.add(description)
-        self.sides, self.young, self.rest = sides, young, mesh.nodes
+        self.drawn, self.rest = drawn, mesh.nodes
         self.surface = mesh.surface().triangles
         self.skin = np.unique(self.surface)
         self.seen = _spread(mesh.nodes, self.skin, max(self.settings.points, self.tracked))
@@ -148,7 +217,7 @@ class Episode:
         beyond = max(strength - self.settings.force_limit, 0.0) * self.settings.control_step
         self.damage += beyond
         reward, done = self.judge()
-        info = {"force": strength, "damage": self.damage, "young": self.young, "success": bool(done), "failure": failure or ""}
+        info = {"force": strength, "damage": self.damage, "young": self.drawn.young, "success": bool(done), "failure": failure or ""}
         # A step that the engine refused ends the episode: the world is as it was before it.
         return float(reward - beyond), bool(done or failure is not None), self.steps >= self.settings.horizon, info
 
@@ -169,6 +238,13 @@ class Episode:
 
     def _scaled(self, places) -> np.ndarray:
         return np.clip(np.asarray(places) / self.extent, -5, 5).astype(np.float32)
+
+    def picture(self) -> np.ndarray:
+        """The depth picture as grey levels of 8 bits, near is bright; shape (height, width, 3)."""
+        depth = self._depth()
+        near, far = float(depth.min()), float(depth[depth < 5].max(initial=depth.min()))
+        grey = np.where(depth < 5, 255 - 200 * (depth - near) / max(far - near, 1e-6), 0).clip(0, 255)
+        return np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)
 
     def _depth(self) -> np.ndarray:
         eye = np.array([0.6, 1.6, 1.8]) * self.extent

@@ -24,18 +24,27 @@ def _liver(cells: int) -> viscera.TetMesh:
 
 
 @lru_cache(maxsize=8)
-def _sheet(cells: int, side: float, thickness: float) -> viscera.TetMesh:
-    """A square sheet around the origin in the plane y = 0 of about so many tetrahedra, one cell thick."""
-    along = max(2, round((cells / 6) ** 0.5))
+def _liver_of_edge(edge: float) -> viscera.TetMesh:
+    return viscera.TetMesh.liver(0.24, edge)
+
+
+@lru_cache(maxsize=8)
+def _sheet(along: int, side: float, thickness: float) -> viscera.TetMesh:
+    """A square sheet around the origin in the plane y = 0, one cell thick and so many along each side."""
     mesh = viscera.TetMesh.box_grid([along, 1, along], [side, thickness, side])
     return mesh.with_nodes(mesh.nodes - np.array([side / 2, thickness / 2, side / 2]))
+
+
+def _along(cells: int, side: float, edge: float | None) -> int:
+    """How many cells a sheet has along a side."""
+    return max(2, round((cells / 6) ** 0.5 if edge is None else side / edge))
 
 
 class _OnLiver(Episode):
     """A liver that is held at its back."""
 
-    def mesh(self):
-        return _liver(self.settings.cells)
+    def mesh(self, edge):
+        return _liver(self.settings.cells) if edge is None else _liver_of_edge(edge)
 
     #: Middle of what is held [m].
     back = (0.0, 0.01, -0.025)
@@ -118,8 +127,8 @@ class Retract(Episode):
 
     extent = 0.15
 
-    def mesh(self):
-        return _sheet(self.settings.cells, 0.12, 0.006)
+    def mesh(self, edge):
+        return _sheet(_along(self.settings.cells, 0.12, edge), 0.12, 0.006)
 
     def held(self):
         return viscera.Region.half_space([-0.046, 0.0, 0.0], [-1.0, 0.0, 0.0])
@@ -133,8 +142,8 @@ class Retract(Episode):
         offsets = np.array([(x, z) for x in grid for z in grid if x * x + z * z <= 0.016**2])
         self._target, self._centre = centre + offsets, centre
         # A place is hidden if a node of the flap is nearer to it, seen from above, than the cells are wide.
-        along = max(2, round((self.settings.cells / 6) ** 0.5))
-        self._near = 0.75 * 0.12 / along * float(self.sides.max())
+        along = _along(self.settings.cells, 0.12, self.drawn.edge)
+        self._near = 0.75 * 0.12 / along * float(self.drawn.sides.max())
         edge = self.rest[:, 0] > self.rest[:, 0].max() - 1e-9
         self._edge = np.flatnonzero(edge)
         self._share = self._seen_share()
@@ -172,8 +181,8 @@ class CutToLine(Episode):
 
     extent = 0.12
 
-    def mesh(self):
-        return _sheet(self.settings.cells, 0.1, 0.005)
+    def mesh(self, edge):
+        return _sheet(_along(self.settings.cells, 0.1, edge), 0.1, 0.005)
 
     def held(self):
         return viscera.Region.half_space([-0.04, 0.0, 0.0], [-1.0, 0.0, 0.0]) | viscera.Region.half_space(
