@@ -49,6 +49,7 @@ fn _viscera(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::PySnapshot>()?;
     module.add_class::<world::PyAttachment>()?;
     module.add_class::<simulated::PySimulatedBody>()?;
+    module.add_class::<report::PyFillingReport>()?;
     module.add_class::<report::PyStepReport>()?;
     module.add_class::<report::PyImplicitReport>()?;
     module.add_class::<report::PyStaticReport>()?;

@@ -16,6 +16,7 @@ use viscera_io::{ImportedMesh, read_mesh, read_volume};
 use crate::arrays::{Numbers, index_array, index_rows, indices, list_array, read_only, vector_array, vectors};
 use crate::error::OrRaise;
 use crate::region::region;
+use crate::report::PyFillingReport;
 use crate::surface::PySurfaceMesh;
 
 /// A mesh of tetrahedra (`TetMesh`) or hexahedra (`HexMesh`): nodes [m], cells, named regions.
@@ -315,11 +316,18 @@ impl PyTetMesh {
         mesh_object(py, VolumeMesh::from(mesh))
     }
 
-    /// A closed surface filled with tetrahedra of `edge` [m].
+    /// A closed surface filled with tetrahedra of about `edge` [m], after mending what can be mended; its skin is new. `filled` says as well
+    /// how much of the surface the mesh holds. Raises `SurfaceRefused` for one with holes.
     #[staticmethod]
     fn from_surface(py: Python<'_>, surface: &PySurfaceMesh, edge: f64) -> PyResult<Py<PyAny>> {
-        let (mesh, _) = py.detach(|| TetMesh::from_surface(&surface.mesh, edge)).or_raise()?;
-        mesh_object(py, VolumeMesh::from(mesh))
+        Ok(Self::filled(py, surface, edge)?.0)
+    }
+
+    /// `from_surface`, and what became of the surface: volume lost, thin parts, pieces.
+    #[staticmethod]
+    fn filled(py: Python<'_>, surface: &PySurfaceMesh, edge: f64) -> PyResult<(Py<PyAny>, PyFillingReport)> {
+        let (mesh, report) = py.detach(|| TetMesh::from_surface(&surface.mesh, edge)).or_raise()?;
+        Ok((mesh_object(py, VolumeMesh::from(mesh))?, PyFillingReport(report)))
     }
 }
 

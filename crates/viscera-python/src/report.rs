@@ -5,6 +5,7 @@ use pyo3::types::PyDict;
 use viscera::body::KeptVolumeNow;
 use viscera::dynamics::implicit::ImplicitReport;
 use viscera::dynamics::quasi_static::StaticReport;
+use viscera::mesh::FillingReport;
 use viscera::world::{BodyObservables, InstrumentObservables, StepReport};
 
 /// What an implicit step did; of several bodies, the worst.
@@ -93,6 +94,35 @@ getters!(PyStepReport {
     removed_cells: usize = |of| of.removed_cells;
     /// What the solver did, in an implicit step; None in an explicit one.
     implicit: Option<PyImplicitReport> = |of| of.implicit.map(PyImplicitReport);
+});
+
+/// What became of a surface when it was filled with tetrahedra.
+#[pyclass(frozen, name = "FillingReport", module = "viscera")]
+pub(crate) struct PyFillingReport(pub(crate) FillingReport);
+
+getters!(PyFillingReport {
+    /// Edge of the lattice [m].
+    edge: f64 = |of| of.edge;
+    /// Tetrahedra made.
+    cells: usize = |of| of.cells;
+    /// Volume of the tetrahedra [m³].
+    volume: f64 = |of| of.volume;
+    /// Volume that the surface encloses, cavities left out [m³].
+    surface_volume: f64 = |of| of.surface.volume;
+    /// Share of that volume which the tetrahedra lack: creases cut off, curves cut short, thin parts lost.
+    volume_lost: f64 = |of| of.volume_lost;
+    /// Share of the area under which the solid is thinner than 1.5 edges, where cells cannot hold it.
+    thin_area: f64 = |of| of.thin_area;
+    /// The edge with which only a hundredth of the area would be thin [m]; at most `edge`.
+    sufficient_edge: f64 = |of| of.sufficient_edge;
+    /// Parts of the mesh that no face connects.
+    pieces: usize = |of| of.pieces;
+    /// Parts of the surface that no edge connects, cavities among them.
+    components: usize = |of| of.surface.components;
+    /// How many of these are cavities.
+    cavities: usize = |of| of.surface.cavities;
+    /// All of it in words: what was mended of the surface, what was lost, and the edge that would do.
+    text: String = |of| of.to_string();
 });
 
 /// A volume that is kept exactly, as it is now.

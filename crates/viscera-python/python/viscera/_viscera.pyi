@@ -3,10 +3,11 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Self, final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Self
 
 _Vector = Sequence[float] | NDArray[np.floating]
 _NumberCurve = float | Curve | Sequence[tuple[float, float]]
@@ -108,6 +109,32 @@ class Curve:
 @final
 class Explicit:
     def __new__(cls, substep: float | None = None) -> Self: ...
+
+@final
+class FillingReport:
+    def as_dict(self) -> dict[str, Any]: ...
+    @property
+    def edge(self) -> float: ...
+    @property
+    def cells(self) -> int: ...
+    @property
+    def volume(self) -> float: ...
+    @property
+    def surface_volume(self) -> float: ...
+    @property
+    def volume_lost(self) -> float: ...
+    @property
+    def thin_area(self) -> float: ...
+    @property
+    def sufficient_edge(self) -> float: ...
+    @property
+    def pieces(self) -> int: ...
+    @property
+    def components(self) -> int: ...
+    @property
+    def cavities(self) -> int: ...
+    @property
+    def text(self) -> str: ...
 
 @final
 class ForceModel:
@@ -482,6 +509,8 @@ class TetMesh(VolumeMesh):
     def trunk(height: float, edge: float) -> TetMesh: ...
     @staticmethod
     def from_surface(surface: SurfaceMesh, edge: float) -> TetMesh: ...
+    @staticmethod
+    def filled(surface: SurfaceMesh, edge: float) -> tuple[TetMesh, FillingReport]: ...
 
 @final
 class Threads:
