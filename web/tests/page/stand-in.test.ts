@@ -1,3 +1,4 @@
+import { existsSync } from 'node:fs';
 import { expect, test, type Page } from '@playwright/test';
 import type { PageState } from '../../src/hook';
 import { StandIn } from '../stand-in/session';
@@ -88,6 +89,14 @@ test.describe('with a stand-in for the session', () => {
     await expect
       .poll(() => session.heard.at(-1))
       .toEqual({ type: 'set', key: 'liver.law.young', value: 4500 });
+    // A tenth of the slider, which spans a factor of 100.
+    const slider = page.getByRole('slider', { name: 'stiffness (Young)' });
+    await slider.press('PageDown');
+    await expect
+      .poll(() => session.heard.at(-1))
+      .toEqual({ type: 'set', key: 'liver.law.young', value: 2830 });
+    await expect(young).toHaveValue('2.83');
+    await expect(slider).toHaveAttribute('aria-valuetext', '2.83 kPa');
     await young.fill('five');
     await young.press('Enter');
     await expect(page.getByText('This is no number.')).toBeVisible();
@@ -180,6 +189,25 @@ test.describe('with a stand-in for the session', () => {
     await expect(page.getByText('The program was restarted; the scene begins anew.')).toBeVisible();
     await expect(page.getByText('Lost the way to the program.')).toBeHidden();
   });
+});
+
+test('static files with no program behind them begin with the engine in the page', async ({ page }) => {
+  const complaints: string[] = [];
+  page.on('console', (message) => {
+    // The browser itself reports that nobody answers.
+    if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text()))
+      complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  await page.goto('/?quality=least');
+  if (existsSync('src/engine/generated/viscera_web_bg.wasm')) {
+    await expect.poll(async () => (await state(page)).engine).toBe('wasm');
+    await expect.poll(async () => (await state(page)).frame !== undefined).toBe(true);
+  } else {
+    await expect(page.getByText('The engine in this page is not to be had.')).toBeVisible();
+    await expect(page.getByText('built without the engine')).toBeVisible();
+  }
+  expect(complaints).toEqual([]);
 });
 
 test.describe('on a tablet', () => {
