@@ -1,5 +1,6 @@
 //! The only list of parameters. A new one is an entry here; the page, its ranges and its refusals follow.
 
+use viscera::material::TissuePreset;
 use viscera_scene::file::{
     BodyFile, GenerateFile, IntegratorFile, IntegratorName, LawFile, LawName, MeshFile, ModelFile, ModelName,
     Precision, SceneFile,
@@ -7,6 +8,7 @@ use viscera_scene::file::{
 use viscera_scene::quantity::{Acceleration, Density, Length, Pressure, Rate, Time};
 
 use super::choices::{default_model, fits, free_choices, integrators, laws, model_choices, name_of, named};
+use super::tissue;
 use super::{Bound, Definition, Form};
 use crate::message::{Choice, Effect, Scale, Value};
 
@@ -21,7 +23,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
         summary: "How the equations of motion are stepped.",
         unit: "",
         effect: Effect::Continues,
-        form: Form::Choice(|_| free_choices(integrators())),
+        form: Form::Choice(|_, _| free_choices(integrators())),
         get: |scene| Some(Value::Text(name_of(scene.integrator.kind))),
         set: |scene, value, _| {
             let Some(kind) = text(value).and_then(named) else { return Vec::new() };
@@ -69,7 +71,7 @@ pub(super) const OF_WORLD: &[Definition<SceneFile>] = &[
         summary: "Digits of the simulation: single for play, double for comparisons.",
         unit: "",
         effect: Effect::Continues,
-        form: Form::Choice(|_| {
+        form: Form::Choice(|_, _| {
             let choice = |name: &str, title: &str| Choice {
                 name: name.into(),
                 title: title.into(),
@@ -91,7 +93,7 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         summary: "How the law becomes forces.",
         unit: "",
         effect: Effect::Continues,
-        form: Form::Choice(model_choices),
+        form: Form::Choice(|body, _| model_choices(body)),
         get: |body| Some(Value::Text(name_of(model_of(body)))),
         set: |body, value, opened| {
             let chosen = text(value).and_then(named).filter(|&kind| kind != model_of(body));
@@ -99,12 +101,22 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         },
     },
     Definition {
+        key: "law.tissue",
+        title: "Tissue",
+        summary: "Law, stiffness and density as they were measured; parts of the body keep their own numbers.",
+        unit: "",
+        effect: Effect::Continues,
+        form: Form::Choice(tissue::choices),
+        get: |body| Some(Value::Text(tissue::of(body).map_or(tissue::OWN, |preset| preset.name).into())),
+        set: choose_tissue,
+    },
+    Definition {
         key: "law.kind",
         title: "Law",
         summary: "How the tissue resists deformation.",
         unit: "",
         effect: Effect::Continues,
-        form: Form::Choice(|_| free_choices(laws())),
+        form: Form::Choice(|_, _| free_choices(laws())),
         get: |body| Some(Value::Text(name_of(body.law.kind))),
         set: choose_law,
     },
@@ -298,6 +310,29 @@ pub(super) const OF_BODY: &[Definition<BodyFile>] = &[
         },
     },
 ];
+
+/// Takes a tissue by name, or goes back to what the scene had.
+fn choose_tissue(body: &mut BodyFile, value: &Value, opened: &BodyFile) -> Vec<String> {
+    let mut notices = Vec::new();
+    // A tissue without fibres may come between: those of the scene run as they did.
+    let course = body.law.fibre.as_ref().or(opened.law.fibre.as_ref());
+    let preset = text(value).and_then(TissuePreset::named);
+    match preset.and_then(|preset| Some((preset, tissue::numbers(preset, course)?))) {
+        Some((preset, (law, density))) => {
+            if body.law.fibre.is_some() && law.fibre.is_none() {
+                notices.push(format!("the tissue `{}` has no fibres: they are left out", preset.name));
+            }
+            (body.law, body.density) = (law, density);
+        }
+        None if tissue::of(body).is_some() => {
+            (body.law, body.density, body.part) = (opened.law.clone(), opened.density, opened.part.clone());
+        }
+        None => return notices,
+    }
+    let kind = Value::Text(name_of(body.law.kind));
+    notices.extend(choose_law(body, &kind, opened));
+    notices
+}
 
 /// Takes another law, and leaves out what it does not know.
 fn choose_law(body: &mut BodyFile, value: &Value, opened: &BodyFile) -> Vec<String> {

@@ -2,6 +2,7 @@
 
 mod choices;
 mod list;
+mod tissue;
 
 pub(crate) use choices::{integrators, laws, models};
 
@@ -36,7 +37,8 @@ pub(crate) enum Form<S: 'static> {
         /// What a slider spans, for the value in the scene as it was opened.
         span: fn(f64) -> (f64, f64),
     },
-    Choice(fn(&S) -> Vec<crate::message::Choice>),
+    /// Of what there is now, and in the scene as it was opened.
+    Choice(fn(&S, &S) -> Vec<crate::message::Choice>),
     Vector,
 }
 
@@ -108,7 +110,7 @@ impl<S> Definition<S> {
                     high,
                 }
             }
-            Form::Choice(choices) => ParameterKind::Choice { choices: choices(file) },
+            Form::Choice(choices) => ParameterKind::Choice { choices: choices(file, original) },
             Form::Vector => ParameterKind::Vector {},
         };
         Some(Parameter {
@@ -144,7 +146,7 @@ impl<S> Definition<S> {
                 refuse(format!("{} is {number}{unit}, and must be {wanted}", self.title), "")
             }
             (Form::Choice(choices), Value::Text(name)) => {
-                let choices = choices(file);
+                let choices = choices(file, original);
                 match choices.iter().find(|choice| choice.name == *name) {
                     Some(choice) if choice.available => Ok((self.effect, (self.set)(file, value, original))),
                     Some(choice) => {

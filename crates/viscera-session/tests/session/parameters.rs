@@ -78,6 +78,54 @@ fn a_model_that_is_chosen_again_has_the_settings_of_the_scene() {
     page.step(1);
 }
 
+/// A tissue that is chosen makes the scene that names it, and its own numbers come back.
+#[test]
+fn a_tissue_by_name_brings_its_law_its_numbers_and_its_density() {
+    let own = r#"law = { kind = "stable-neo-hookean", young = 20e3, poisson = 0.4 }"#;
+    let naming = |law: &str| BAR.replace("density = 1000\n", "").replace(own, law);
+    let tissue = |page: &Page| {
+        let known = page.scene().parameters.iter().find(|known| known.key == "body.bar.law.tissue").unwrap();
+        known.value.clone()
+    };
+    let mut page = Page::open(BAR);
+    let opened = page.text();
+    assert_eq!(tissue(&page), Value::Text("own".into()));
+    page.set("body.bar.law.tissue", "kidney");
+    assert_eq!(page.refusals(), []);
+    let mut kidney = Page::open(&naming(r#"law = { tissue = "kidney" }"#));
+    assert_eq!((tissue(&page), tissue(&kidney)), (Value::Text("kidney".into()), Value::Text("kidney".into())));
+    assert_eq!(page.text(), kidney.text());
+    page.step(1);
+    page.set("body.bar.law.young", 9e3);
+    assert_eq!(tissue(&page), Value::Text("own".into()), "a kidney is stiffer");
+    page.set("body.bar.law.tissue", "liver");
+    page.set("body.bar.law.tissue", "own");
+    assert_eq!(page.refusals(), []);
+    assert_eq!(page.text(), opened);
+    kidney.set("body.bar.law.tissue", "own");
+    assert!(kidney.refusals()[0].help.contains("the scene has those of `kidney`"));
+}
+
+/// Fibres stay where the scene has them run, also after a tissue that has none.
+#[test]
+fn a_tissue_with_fibres_takes_their_course_from_the_scene() {
+    let own = r#"kind = "stable-neo-hookean", young = 20e3, poisson = 0.4"#;
+    let course = "fibre = { direction = [0, 0, 1], factor = 2 }";
+    let mut page = Page::open(
+        &BAR.replace(own, &format!(r#"kind = "st-venant-kirchhoff", young = 20e3, poisson = 0.4, {course}"#)),
+    );
+    let muscle = r#"tissue = "muscle", fibre = { direction = [0, 0, 1] }"#;
+    let muscle = Page::open(&BAR.replace("density = 1000\n", "").replace(own, muscle)).text();
+    page.set("body.bar.law.tissue", "muscle");
+    assert_eq!(page.text(), muscle);
+    page.set("body.bar.law.tissue", "liver");
+    assert_eq!(page.notices(), ["the tissue `liver` has no fibres: they are left out"]);
+    assert!(!page.text().contains("fibre"));
+    page.set("body.bar.law.tissue", "muscle");
+    assert_eq!(page.refusals(), []);
+    assert_eq!(page.text(), muscle);
+}
+
 /// What a page shows is what the catalogue says: each value lies in its range, each default is what the scene file had.
 #[test]
 fn parameters_of_the_built_in_scenes_lie_in_their_ranges() {
