@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use viscera_scene::file::InstrumentFile;
+
 use super::Session;
 use crate::export::Row;
 use crate::message::{
     Answer, BodyFrame, ColourRange, F32s, FrameMessage, InstrumentFrame, Observables, SceneMessage, SnapshotEntry,
 };
 use crate::parameter;
+use crate::simulation::Play;
 use crate::simulation::colour::Colouring;
-use crate::simulation::tools;
+use crate::simulation::tools::{self, Tool};
 
 /// Time between observations [s], which cost as much as a few steps.
 const BETWEEN_OBSERVATIONS: f64 = 0.05;
@@ -120,6 +123,14 @@ impl Gallery {
     }
 }
 
+/// The angle between open jaws that the scene describes [rad].
+fn widest(play: &Play, tool: &Tool) -> Option<f64> {
+    match play.file.instrument.get(&tool.name).filter(|_| tool.of_scene)? {
+        InstrumentFile::Grasper { jaws: Some(jaws), .. } => Some(jaws.opening.0),
+        _ => None,
+    }
+}
+
 impl Session {
     /// Makes the next picture even if nothing changes: somebody new looks on, and no picture is kept.
     pub fn look_again(&mut self) {
@@ -168,6 +179,13 @@ impl Session {
         let play = &self.play;
         let (centre, radius) = play.ball;
         let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
+        let shape = |(number, tool)| {
+            let mut shape = tools::shape(&play.world, number as u32, tool, radius);
+            if let (Some(jaw), Some(widest)) = (&mut shape.jaw, widest(play, tool)) {
+                jaw.widest = widest;
+            }
+            shape
+        };
         let snapshot =
             |kept: &Option<crate::simulation::Kept>| kept.as_ref().map(|kept| SnapshotEntry { time: kept.time });
         SceneMessage {
@@ -183,7 +201,7 @@ impl Session {
             radius,
             camera: play.camera(),
             bodies: play.bodies(),
-            instruments: present.map(|(number, tool)| tools::shape(&play.world, number as u32, tool, radius)).collect(),
+            instruments: present.map(shape).collect(),
             parameters: parameter::parameters(&play.file, &play.original),
             snapshots: self.slots.iter().map(snapshot).collect(),
             ghost: play.ghost.is_some(),
@@ -193,7 +211,11 @@ impl Session {
 
     fn frame_message(&mut self) -> FrameMessage {
         let present = self.play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
-        let frame = |(number, tool)| tools::frame(&self.play.world, number as u32, tool);
+        let frame = |(number, tool)| {
+            let frame = tools::frame(&self.play.world, number as u32, tool);
+            let opening = widest(&self.play, tool).map_or(frame.opening, |widest| widest * (1.0 - frame.trigger));
+            InstrumentFrame { opening, ..frame }
+        };
         let instruments: Vec<InstrumentFrame> = present.map(frame).collect();
         let observables = self.observe(&instruments);
         let by = self.colouring;

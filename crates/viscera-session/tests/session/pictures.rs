@@ -137,3 +137,25 @@ fn kept_volumes_and_precomputed_parts_tell_their_error() {
     assert_eq!(volume, None);
     assert!(interface.is_some_and(|change| change > 0.0 && change < 1.0), "{interface:?}");
 }
+
+/// Jaws are as wide as the scene says, and in proportion to the trigger.
+#[test]
+fn jaws_open_as_wide_as_the_scene_says() {
+    let grasper = r#"
+[instrument.narrow]
+kind = "grasper"
+path = [0.02, 0.1, 0.06]
+jaws = { opening = 0.4 }
+"#;
+    let mut page = Page::open(&(light_bar() + grasper));
+    page.step(1);
+    let (shape, frame) = (page.scene().instruments[0].clone(), page.frame().instruments[0].clone());
+    assert_eq!(shape.jaw.map(|jaw| jaw.widest), Some(0.4));
+    assert_eq!((frame.trigger, frame.opening), (0.0, 0.4));
+    page.lead(0, [0.02, 0.1, 0.06], 1.0);
+    page.step(1);
+    let frame = page.frame().instruments[0].clone();
+    assert!((frame.opening - 0.4 * (1.0 - frame.trigger)).abs() < 1e-12 && frame.trigger > 0.0, "{frame:?}");
+    page.add("grasper", [0.06, 0.1, 0.06], [0.0, -1.0, 0.0]);
+    assert_eq!(page.scene().instruments[1].jaw.map(|jaw| jaw.widest), Some(1.0), "what a hand brings in is as usual");
+}
