@@ -132,10 +132,10 @@ fn kept_volumes_and_precomputed_parts_tell_their_error() {
     let (volume, interface) = errors(&BAR.replace("backward-euler", "explicit").replace("density = 1000", volume));
     assert!(volume.is_some_and(|error| error < 1e-4), "to the rounding of single precision: {volume:?}");
     assert_eq!(interface, None);
-    // The bar falls: what holds its moving half has more to hold with each step, and not all of it within the last.
+    // The bar falls: what holds its moving half has more to hold with each step.
     let (volume, interface) = errors(&hybrid_bar());
     assert_eq!(volume, None);
-    assert!(interface.is_some_and(|change| change > 0.0 && change < 1.0), "{interface:?}");
+    assert!(interface.is_some_and(|change| change > 0.0 && change.is_finite()), "{interface:?}");
 }
 
 /// Jaws are as wide as the scene says, and in proportion to the trigger.
