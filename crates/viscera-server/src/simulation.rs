@@ -184,3 +184,36 @@ impl Player {
         let _ = self.answers.send(Outgoing { audience, bytes: answer.encode().into() });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use tokio::time::timeout;
+
+    use super::*;
+
+    /// Two messages of the longest do not wait side by side: the second one comes when the first is taken, and with short ones it is the
+    /// number that counts.
+    #[test]
+    fn what_waits_for_the_simulation_is_bounded_in_bytes() {
+        let (commands, received) = sync_channel(WAITING);
+        let stage = Stage {
+            commands,
+            space: Arc::new(Semaphore::new(WAITING_BYTES / PIECE)),
+            pictures: watch::channel(None).1,
+            answers: broadcast::Sender::new(1),
+            catalogue: Arc::from([]),
+            threads: 1,
+        };
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            assert!(stage.send(vec![0; LONGEST_MESSAGE]).await);
+            assert!(stage.send(vec![0; LONGEST_SHORT]).await, "short ones find room beside it");
+            let soon = Duration::from_millis(20);
+            assert!(timeout(soon, stage.send(vec![0; LONGEST_MESSAGE])).await.is_err(), "another long one waits");
+            drop((received.recv().unwrap(), received.recv().unwrap()));
+            assert!(stage.send(vec![0; LONGEST_MESSAGE]).await);
+            drop(received);
+            assert!(!stage.send(Vec::new()).await, "nobody takes any more");
+        });
+    }
+}

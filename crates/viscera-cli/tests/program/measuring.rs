@@ -72,3 +72,15 @@ fn a_soak_tells_rounds_steps_and_memory_and_ends_well_where_that_does_not_grow()
     desk.viscera(&["bench", "soak", "--help"]).ends_with(0).says("[default: \"1 h\"]");
     desk.viscera(&["bench", "capacity", "--help"]).ends_with(0).says("--quick");
 }
+
+/// Frames of a session behind the real server, taken by a client over a socket. Whether the channel keeps time is the machine's affair.
+#[test]
+fn a_haptic_channel_is_measured_while_a_page_is_served() {
+    let desk = Desk::new();
+    let coarse = ["--set", "body.liver.mesh.edge=30 mm", "--for", "2 s"];
+    desk.viscera(&[&["bench", "haptics", "--page"][..], &coarse].concat())
+        .says("60 surfaces a second go to a page")
+        .says("served to 1 client: ")
+        .says(" samples of ")
+        .says("limited in");
+}

@@ -5,10 +5,10 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
-use std::process::{Child, ChildStdout, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::Desk;
+use crate::{CUBE, Desk};
 
 /// A desktop whose browser only writes down what it is to show.
 fn desk_with_a_browser() -> Desk {
@@ -23,7 +23,7 @@ fn desk_with_a_browser() -> Desk {
 struct Simulator {
     child: Child,
     /// Open, so that the program can go on speaking.
-    _out: BufReader<ChildStdout>,
+    out: BufReader<ChildStdout>,
     address: String,
 }
 
@@ -40,7 +40,7 @@ impl Simulator {
         let (mut out, mut line) = (BufReader::new(child.stdout.take().expect("a pipe")), String::new());
         out.read_line(&mut line).expect("it speaks");
         let address = line.split_whitespace().find(|word| word.starts_with("http://")).expect("an address").to_owned();
-        Self { child, _out: out, address }
+        Self { child, out, address }
     }
 
     /// What it answers to who asks for the page.
@@ -92,4 +92,43 @@ fn the_page_is_opened_where_there_is_a_desktop_unless_told_otherwise() {
             "with {more:?} on display `{display}`"
         );
     }
+}
+
+/// A probe above the cube that hangs, which the scene does not move.
+fn cube_with_a_probe() -> String {
+    format!("{CUBE}\n[instrument.probe]\nkind = \"probe\"\npath = [0.05, 0.12, 0.05]\n")
+}
+
+#[test]
+fn a_hand_on_a_device_leads_an_instrument_and_its_figures_are_told_in_the_end() {
+    let desk = Desk::new();
+    desk.write("cube.toml", cube_with_a_probe());
+    let more = ["cube.toml", "--no-open", "--haptics", "emulated:10 mm", "--haptics-instrument", "0"];
+    let mut simulator = Simulator::start(&desk, &more, "");
+    let mut hand = String::new();
+    simulator.out.read_line(&mut hand).expect("it speaks");
+    assert!(hand.contains("leads instrument 0, `probe`: it presses by 10 mm"), "{hand}");
+    std::thread::sleep(Duration::from_millis(500));
+    let ended = Command::new("kill").args(["-TERM", &simulator.child.id().to_string()]).status().expect("kill");
+    assert!(ended.success());
+    let mut figures = String::new();
+    simulator.out.read_to_string(&mut figures).expect("it speaks");
+    assert_eq!(simulator.child.wait().expect("it ends").code(), Some(0), "{figures}");
+    for words in ["latency of samples", " a second, ", " left out; ", " samples of ", "limited in"] {
+        assert!(figures.contains(words), "`{words}` is not in:\n{figures}");
+    }
+}
+
+#[test]
+fn what_no_hand_can_lead_is_refused_before_anything_is_served() {
+    let desk = Desk::new();
+    desk.write("cube.toml", CUBE);
+    desk.write("probe.toml", cube_with_a_probe());
+    let serve = |more: &[&str]| desk.viscera(&[&["serve", "--port", "0", "--no-open"][..], more].concat()).ends_with(2);
+    serve(&["cube.toml", "--haptics", "emulated"]).complains("add a grasper or a probe");
+    serve(&["probe.toml", "--haptics", "emulated", "--haptics-instrument", "3"]).complains("it has 0 (probe)");
+    serve(&["probe.toml", "--haptics", "touch"]).complains("`emulated`");
+    serve(&["probe.toml", "--haptics-instrument", "0"]).complains("--haptics");
+    let direct = ["--haptics", "emulated", "--haptics-extrapolation", "direct"];
+    serve(&[&["probe.toml"][..], &direct].concat()).complains("known are hold, time, position, linearised");
 }

@@ -1,110 +1,20 @@
 //! The server as a browser has it: over a real socket on this machine.
 
-use std::net::SocketAddr;
-use std::time::Duration;
+mod haptics;
+mod limits;
+mod visitor;
 
-use futures_util::{SinkExt, StreamExt};
+use std::net::SocketAddr;
+
+use futures_util::SinkExt;
 use tokio::net::TcpStream;
-use tokio::runtime::Runtime;
 use tokio::time::timeout;
+use tokio_tungstenite::connect_async;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
-use tokio_tungstenite::tungstenite::protocol::CloseFrame;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
-use viscera::executor::Executor;
-use viscera_server::{Server, Settings};
-use viscera_session::Session;
-use viscera_session::message::{Answer, Command, FrameMessage, Request, Role, RunState, VERSION, Welcome};
+use viscera_session::message::{Answer, Command, Request, Role, RunState, VERSION};
 
-const BAR: &str = r#"
-duration = "1 s"
-step = "10 ms"
-integrator = { kind = "backward-euler" }
-
-[body.bar]
-mesh = { generate = "box", size = [0.04, 0.04, 0.12], cells = [2, 2, 6] }
-density = 1000
-law = { kind = "stable-neo-hookean", young = 20e3, poisson = 0.4 }
-model = { kind = "total-lagrangian" }
-fix = "z-min"
-"#;
-
-/// Longer than any answer takes on a machine that is busy; nothing is measured with it.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// A server with a bar that moves.
-fn start() -> (Server, Runtime) {
-    let mut session = Session::new(Executor::serial());
-    session.handle(Request::from(Command::OpenText { text: BAR.into(), name: None }));
-    session.handle(Request::from(Command::Play {}));
-    let server = Server::start(Settings { port: 0, ..Settings::default() }, session).unwrap();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-    (server, runtime)
-}
-
-/// Somebody with a browser.
-struct Visitor {
-    socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
-}
-
-impl Visitor {
-    async fn connect(address: SocketAddr) -> Self {
-        Self { socket: connect_async(format!("ws://{address}/ws")).await.unwrap().0 }
-    }
-
-    /// Connects and says hello.
-    async fn enter(address: SocketAddr) -> (Self, Welcome) {
-        let mut visitor = Self::connect(address).await;
-        visitor.say(Command::Hello { version: VERSION, client: None }).await;
-        match visitor.hear().await {
-            Some(Answer::Welcome(welcome)) => (visitor, welcome),
-            other => panic!("no welcome: {other:?}"),
-        }
-    }
-
-    async fn say(&mut self, command: Command) {
-        self.send(Request::from(command).encode()).await;
-    }
-
-    async fn send(&mut self, bytes: Vec<u8>) {
-        self.socket.send(Message::Binary(bytes.into())).await.unwrap();
-    }
-
-    /// The next answer; none when the connection is closed.
-    async fn hear(&mut self) -> Option<Answer> {
-        loop {
-            match timeout(PATIENCE, self.socket.next()).await.expect("an answer comes") {
-                Some(Ok(Message::Binary(bytes))) => return Some(Answer::decode(&bytes).unwrap()),
-                Some(Ok(Message::Close(_)) | Err(_)) | None => return None,
-                Some(Ok(_)) => {}
-            }
-        }
-    }
-
-    /// Hears until something is what is waited for.
-    async fn until<T>(&mut self, mut wanted: impl FnMut(Answer) -> Option<T>) -> T {
-        loop {
-            if let Some(found) = wanted(self.hear().await.expect("the connection stays")) {
-                return found;
-            }
-        }
-    }
-
-    async fn frame(&mut self) -> FrameMessage {
-        self.until(|answer| if let Answer::Frame(frame) = answer { Some(frame) } else { None }).await
-    }
-
-    /// Why the server closed.
-    async fn closed(&mut self) -> CloseFrame {
-        loop {
-            match timeout(PATIENCE, self.socket.next()).await.expect("the server closes") {
-                Some(Ok(Message::Close(Some(frame)))) => return frame,
-                Some(Ok(_)) => {}
-                other => panic!("closed without a reason: {other:?}"),
-            }
-        }
-    }
-}
+use visitor::{BAR, PATIENCE, Visitor, start};
 
 #[test]
 fn a_page_hears_welcome_catalogue_scene_surface_and_frames_that_move() {
@@ -192,22 +102,6 @@ fn other_versions_and_those_who_do_not_greet_are_shown_the_door_with_a_reason() 
         let mut visitor = Visitor::connect(server.address()).await;
         visitor.say(Command::Pause {}).await;
         assert!(visitor.closed().await.reason.contains("hello"));
-    });
-}
-
-/// More than 64 MiB is not even read.
-#[test]
-fn a_message_beyond_all_limits_ends_its_connection_and_no_other() {
-    let (server, runtime) = start();
-    runtime.block_on(async {
-        let (mut visitor, _) = Visitor::enter(server.address()).await;
-        let (mut watcher, _) = Visitor::enter(server.address()).await;
-        // The server may close before all is sent.
-        let _ = visitor.socket.send(Message::Binary(vec![0; (64 << 20) + 2048].into())).await;
-        while visitor.hear().await.is_some() {}
-        let role = watcher.until(|answer| if let Answer::Role(role) = answer { Some(role) } else { None }).await;
-        assert_eq!(role.role, Role::Controller);
-        watcher.frame().await;
     });
 }
 
