@@ -29,7 +29,7 @@ pub(crate) fn serve(arguments: &ServeArguments) -> Result<(), Failure> {
     let url = format!("http://{shown}/");
     terminal::say(&format!("the simulator is at {url} (Ctrl-C ends it)"));
     if let Some(in_hand) = in_hand {
-        terminal::say(&in_hand);
+        terminal::say(&format!("{in_hand}; how its channel keeps time stands at {url}haptics"));
     }
     if let Some(reason) = server.missing_page() {
         terminal::complain(&format!(

@@ -65,7 +65,7 @@ pub use run::{End, Run, Source, run};
 pub use sample::{Contact, Pose, Sample, SampleError};
 pub use setting::SettingError;
 pub use statistics::{Recorder, Spread, Statistics};
-pub use thread::{HapticThread, Priority, Report, SimulationSide, StartError};
+pub use thread::{Figures, HapticThread, Priority, Report, SimulationSide, StartError};
 pub use tool::{Tool, ToolError};
 pub use velocity::VelocityEstimate;
 pub use watchdog::{Watchdog, WatchdogState};

@@ -48,6 +48,24 @@ pub struct Statistics {
     pub warmth: f64,
 }
 
+impl fmt::Display for Statistics {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { ticks, rate, missed, samples, refused, silent, limited, damped, faults, .. } = self;
+        let punctual = 100.0 * self.punctual;
+        writeln!(formatter, "{ticks} periods, {rate:.2} a second; {missed} left out; {punctual:.3} % punctual")?;
+        for (name, spread) in [
+            ("period", self.period),
+            ("lateness", self.lateness),
+            ("work", self.busy),
+            ("latency of samples", self.latency),
+        ] {
+            writeln!(formatter, "{name}: {spread}")?;
+        }
+        writeln!(formatter, "{samples} samples, {refused} refused; {faults} times without an answer of the device")?;
+        write!(formatter, "silent in {silent} periods, limited in {limited}, damped in {damped}")
+    }
+}
+
 /// Times, from the most common to the longest [s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {

@@ -36,8 +36,22 @@ pub enum StartError {
 #[derive(Debug)]
 pub struct HapticThread<D> {
     stop: Arc<AtomicBool>,
-    figures: Arc<Mutex<Option<Statistics>>>,
+    figures: Figures,
     thread: Option<JoinHandle<(D, End, Statistics, bool)>>,
+}
+
+/// The figures of a channel, for whoever likes to look at them while it runs.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    newest: Arc<Mutex<Option<Statistics>>>,
+}
+
+impl Figures {
+    /// Those of a moment ago; none in the first quarter of a second.
+    pub fn newest(&self) -> Option<Statistics> {
+        // A thread that panicked while it held the lock has left whole figures: they are copied in one go.
+        *self.newest.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
 }
 
 /// How a thread ended.
@@ -127,8 +141,8 @@ impl<D: Device + 'static> HapticThread<D> {
         source: impl Source + Send + 'static,
     ) -> Result<Self, StartError> {
         let channel = Channel::new(settings, device.rating())?;
-        let (stop, figures) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(None)));
-        let (stop_there, figures_there) = (Arc::clone(&stop), Arc::clone(&figures));
+        let (stop, figures) = (Arc::new(AtomicBool::new(false)), Figures::default());
+        let (stop_there, figures_there) = (Arc::clone(&stop), Arc::clone(&figures.newest));
         let thread = std::thread::Builder::new()
             .name("haptics".into())
             .spawn(move || carry_out(device, channel, source, priority, &stop_there, &figures_there))?;
@@ -137,8 +151,12 @@ impl<D: Device + 'static> HapticThread<D> {
 
     /// The figures of a moment ago; none in the first quarter of a second.
     pub fn statistics(&self) -> Option<Statistics> {
-        // A thread that panicked while it held the lock has left whole figures: they are copied in one go.
-        *self.figures.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.figures.newest()
+    }
+
+    /// The same for somebody else to read.
+    pub fn figures(&self) -> Figures {
+        self.figures.clone()
     }
 
     /// Whether the channel still runs. It ends by itself when the device is lost.

@@ -10,7 +10,9 @@ use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 use viscera_session::Seen;
-use viscera_session::message::{Answer, Command, LONGEST, Refusal, Request, Role, RoleMessage, VERSION, Welcome};
+use viscera_session::message::{
+    Answer, Command, LONGEST, LONGEST_SHORT, Refusal, Request, Role, RoleMessage, VERSION, Welcome,
+};
 
 use crate::room::{Room, Seat};
 use crate::simulation::{Audience, Outgoing, Stage};
@@ -107,6 +109,11 @@ async fn greet(socket: &mut WebSocket) -> Result<(), Parting> {
     let reason = match timeout(GREETING, hello).await {
         Err(_) => "no hello came in time".to_owned(),
         Ok(Err(parting)) => return Err(parting),
+        // Longer ones are not even decoded.
+        Ok(Ok(bytes)) if bytes.len() > LONGEST_SHORT => {
+            let reason = format!("the first message has to be hello, of at most {} KiB", LONGEST_SHORT >> 10);
+            return Err(Parting::Shown { code: TOO_LONG, reason });
+        }
         Ok(Ok(bytes)) => match Request::decode(&bytes).map(|request| request.command) {
             Ok(Command::Hello { version: VERSION, .. }) => return Ok(()),
             Ok(Command::Hello { version, .. }) => {

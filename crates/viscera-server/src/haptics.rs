@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use viscera_haptics::{
-    ChannelSettings, Contact, Device, Extrapolation, HapticThread, Priority, Report, Sample, SimulationSide,
-    StartError, Statistics, Vector,
+    ChannelSettings, Contact, Device, Extrapolation, Figures, HapticThread, Priority, Report, Sample, SimulationSide,
+    StartError, Vector,
 };
 use viscera_session::Session;
 use viscera_session::message::{InstrumentShape, Level, Notice, Refusal};
@@ -145,8 +145,8 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    pub(crate) fn statistics(&self) -> Option<Statistics> {
-        self.thread.statistics()
+    pub(crate) fn figures(&self) -> Figures {
+        self.thread.figures()
     }
 
     pub(crate) fn is_running(&self) -> bool {

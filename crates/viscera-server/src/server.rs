@@ -3,7 +3,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use axum::Router;
 use axum::extract::{Request, State, WebSocketUpgrade};
-use axum::http::{HeaderMap, Uri};
+use axum::http::{HeaderMap, StatusCode, Uri};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
@@ -11,7 +11,7 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
 use tokio::time::sleep;
-use viscera_haptics::{StartError, Statistics};
+use viscera_haptics::{Figures, StartError, Statistics};
 use viscera_session::Session;
 
 use crate::connection::{self, House, LONGEST_MESSAGE};
@@ -111,8 +111,10 @@ impl Server {
         let stage = Stage::start(session, room.clone(), reins).map_err(ServeError::Threads)?;
         let guard = Guard { allowed: settings.allowed_hosts };
         let house = House { stage, room, number: number_of_this_run(), ping: settings.ping };
+        let of_channel = channel.as_ref().map(Channel::figures);
         let app = Router::new()
             .route("/ws", get(upgrade))
+            .route("/haptics", get(async move || figures(of_channel.as_ref())))
             .fallback(get(|uri: Uri| async move { page::file(&uri) }))
             .layer(middleware::from_fn_with_state(guard, check))
             .with_state(house);
@@ -137,7 +139,7 @@ impl Server {
 
     /// Figures of the haptic channel, of a moment ago; none where there is no device, and in the first quarter of a second.
     pub fn haptics(&self) -> Option<Statistics> {
-        self.channel.as_ref().and_then(Channel::statistics)
+        self.channel.as_ref().and_then(|channel| channel.figures().newest())
     }
 
     /// Whether a haptic device is at work.
@@ -174,6 +176,16 @@ async fn check(State(guard): State<Guard>, headers: HeaderMap, request: Request,
     match guard.check(&headers) {
         Ok(()) => next.run(request).await,
         Err(refused) => refused.into_response(),
+    }
+}
+
+/// The figures of the haptic channel, for a person to read.
+fn figures(of_channel: Option<&Figures>) -> Response {
+    match of_channel.map(Figures::newest) {
+        None => (StatusCode::NOT_FOUND, "no haptic device leads an instrument; `viscera serve --haptics` gives it one")
+            .into_response(),
+        Some(None) => "the haptic channel has only just begun".into_response(),
+        Some(Some(statistics)) => statistics.to_string().into_response(),
     }
 }
 

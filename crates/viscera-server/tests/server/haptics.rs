@@ -12,6 +12,7 @@ use viscera_server::{Haptics, Server, Settings, instrument_for_a_hand};
 use viscera_session::Session;
 use viscera_session::message::{Answer, Bytes, Command, Request};
 
+use crate::ask;
 use crate::visitor::{BAR, Visitor, runtime, session};
 
 /// The bar without weight, and a probe whose round tip is 8 mm above its free end, pointing down. It is too thick to pass
@@ -125,6 +126,9 @@ fn a_device_presses_tissue_that_the_page_sees_and_the_hand_feels_and_is_released
         while server.haptics().is_none_or(|statistics| statistics.samples == 0) {
             visitor.frame().await;
         }
+        let address = server.address();
+        let (status, text) = ask(address, &format!("GET /haptics HTTP/1.1\r\nHost: {address}\r\n")).await;
+        assert!(status == 200 && text.contains("latency of samples: median"), "{text}");
     });
     assert!(server.has_haptics());
     let report = server.stop().expect("there was a device");

@@ -55,6 +55,18 @@ fn a_first_message_beyond_all_limits_is_told_so() {
     });
 }
 
+/// What has not said hello yet may not have megabytes decoded.
+#[test]
+fn a_hello_of_more_than_64_kib_is_shown_the_door() {
+    let (server, runtime) = start();
+    runtime.block_on(async {
+        let mut visitor = Visitor::connect(server.address()).await;
+        visitor.send(vec![0xc0; (64 << 10) + 1]).await;
+        let closed = visitor.closed().await;
+        assert!(u16::from(closed.code) == 1009 && closed.reason.contains("hello"), "{closed:?}");
+    });
+}
+
 /// The refusal carries the number of the command, however much else there is in it.
 #[test]
 fn a_watcher_with_a_mesh_is_refused_by_its_number() {

@@ -187,6 +187,8 @@ fn other_sites_get_neither_the_page_nor_the_session() {
             ("/ws", own.as_str(), Some("http://evil.example"), [403, 403]),
             ("/ws", "rebound.example", Some("http://rebound.example"), [403, 403]),
             ("/nothing", own.as_str(), None, [404, 404]),
+            ("/haptics", own.as_str(), None, [404, 404]),
+            ("/haptics", "rebound.example", None, [403, 403]),
         ] {
             let origin = origin.map_or(String::new(), |origin| format!("Origin: {origin}\r\n"));
             let (status, text) =
