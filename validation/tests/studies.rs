@@ -72,6 +72,13 @@ fn integrated_at_the_nodes_nothing_locks_and_plain_elements_do() {
             assert!(if nodal_too { off < nodal } else { off > plain }, "{ratio} of the converged result");
         }
     }
+    // Twelve of the membrane, three elements of two laws of the cube.
+    assert_eq!(found.locked.len(), 12 + 6);
+    for locked in &found.locked {
+        assert!(locked.difference < 1e-6, "not that of another program: {locked:?}");
+        let locks = if locked.strain.is_some() { locked.ratio > 2.5 } else { locked.ratio < 0.42 };
+        assert!(locks, "{locked:?}");
+    }
 }
 
 /// The measured beads are published without a licence, and are used where they lie beside the checkout.
