@@ -202,7 +202,7 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
          that is non-linear everywhere grows with the threshold up to some 2 cm, and stays there: it is then above that of the linear \
          law everywhere.",
     )
-    .setting("scene", format!("liver-adaptive, damped at {DAMPING} 1/s, {DURATION} s of which the last four at rest; double precision, one thread"))
+    .setting("scene", format!("liver-adaptive, damped at {DAMPING} 1/s, {DURATION} s of which four to come to rest; double precision, one thread"))
     .setting("liver", format!("{} tetrahedra, {} vertices", full.cells, full.shape.places().len()))
     .setting("largest way", format!("{:.0} mm", 1e3 * full.largest));
     let mut pictures = vec![("non-linear", "Non-linear everywhere".to_owned(), &full)];
@@ -236,8 +236,10 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
         let errors: Vec<f64> = narrow.map(|(_, run)| error(run)).collect();
         errors.into_iter().rev().chain([error(&full)]).collect()
     };
-    let worst =
-        |of: &dyn Fn(&Pulled) -> f64| runs.iter().map(|run| of(run)).fold(0.0, |a, b| if b <= a { a } else { b });
+    // What is not a number stays none.
+    let worst = |of: &dyn Fn(&Pulled) -> f64| {
+        runs.iter().map(|run| of(run)).fold(0.0, |a: f64, b| if a.is_nan() || b <= a { a } else { b })
+    };
     Ok(section
         .relation(Relation::falls(
             "the higher the threshold, the fewer vertices are non-linear [%]",
