@@ -1,13 +1,15 @@
 """Meshes and fields for other packages."""
 
+import matplotlib
+import meshio
 import numpy as np
 import pytest
+import pyvista
 
 import viscera
 
 
 def test_a_mesh_goes_through_meshio_and_back(tmp_path, beam):
-    meshio = pytest.importorskip("meshio")
     mesh = viscera.TetMesh.box_grid([2, 1, 1], [0.2, 0.1, 0.1])
     back = viscera.from_meshio(viscera.to_meshio(mesh))
     assert np.array_equal(back.nodes, mesh.nodes) and np.array_equal(back.cells, mesh.cells)
@@ -24,7 +26,6 @@ def test_a_mesh_goes_through_meshio_and_back(tmp_path, beam):
 
 
 def test_a_body_goes_to_pyvista_without_what_is_cut_away(beam):
-    pytest.importorskip("pyvista")
     _, body = beam()
     body.remove_cells([0, 1])
     grid = viscera.to_pyvista(body, cell_data={"J": body.volume_ratio()})
@@ -34,7 +35,6 @@ def test_a_body_goes_to_pyvista_without_what_is_cut_away(beam):
 
 
 def test_a_body_is_drawn_in_one_call(tmp_path, beam):
-    matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     _, body = beam()
     body.settle()

@@ -28,16 +28,23 @@ def test_numpy_is_the_only_requirement_and_the_rest_are_extras():
     assert extras == {"gym", "dask", "plot", "mesh", "sparse"} == set(importlib.metadata.metadata("viscera").get_all("Provides-Extra"))
 
 
+def test_one_wheel_serves_every_python_from_the_one_that_it_asks_for_on():
+    """The stable interface of 3.10, in the wheel's tag and in the name of what was compiled."""
+    distribution = importlib.metadata.distribution("viscera")
+    tags = [line.removeprefix("Tag: ") for line in distribution.read_text("WHEEL").splitlines() if line.startswith("Tag: ")]
+    assert tags and all(tag.startswith("cp310-abi3-") for tag in tags)
+    assert distribution.metadata["Requires-Python"] == ">=3.10"
+    assert Path(_viscera.__file__).name.split(".")[1] == "abi3"
+
+
 def test_the_stub_says_what_the_compiled_module_is(tmp_path):
     """mypy's stubtest: every name, argument, default and special method; but for `__all__`, which the compiled module makes by itself."""
-    pytest.importorskip("mypy")
     allowed = tmp_path / "allowed"
     allowed.write_text("viscera._viscera.__all__\n")
     run("mypy.stubtest", "viscera._viscera", "--concise", "--ignore-disjoint-bases", "--allowlist", str(allowed))
 
 
 def test_package_and_examples_pass_mypy():
-    pytest.importorskip("mypy")
     run("mypy", "-p", "viscera", "--ignore-missing-imports", "--check-untyped-defs")
     run("mypy", *map(str, sorted(EXAMPLES.glob("*.py"))), "--ignore-missing-imports", "--check-untyped-defs")
 

@@ -79,6 +79,34 @@ def test_a_shipped_scene_goes_through_python_and_runs_to_the_bits_of_the_command
             assert row[f"{name}: force {axis} [N]"] == value
 
 
+@pytest.mark.parametrize("precision", ["single", "double"])
+def test_a_resection_runs_to_the_bits_of_the_command_line_past_its_first_cuts(precision, tmp_path):
+    """A liver in coarse cells: the grasper holds, the cautery takes cells away, and what is left goes on to the last bit."""
+    path = next(path for path in SCENES if path.stem == "liver-resection")
+    changes = {"body.liver.mesh.edge": "30 mm", "duration": 1.6, "output.interval": 0.4}
+    command = [PROGRAM, "run", str(path), "--out", str(tmp_path / "out"), "--quiet", "--pictures", "0", "--precision", precision]
+    command += [part for key, value in changes.items() for part in ("--set", f"{key}={value}")]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    scene = viscera.Scene.load(path)
+    for key, value in changes.items():
+        scene.set(key, value)
+    world, steps, _ = scene.build(precision=precision)
+    liver, removed = world.body("liver"), []
+    for _ in range(steps):
+        world.step()
+        removed.append(int(liver.removed.sum()))
+    assert removed[0] == 0 and len(set(removed)) > 2, "the cautery cuts more than once"
+    assert steps - np.argmax(np.array(removed) > 0) > 20, "the run goes on after the first cut"
+    frames = sorted((tmp_path / "out" / "frames").glob("liver-*.vtu"))
+    assert np.array_equal(points(frames[-1]), liver.positions) and len(frames) == 5
+    header, *_, last = (tmp_path / "out" / "observables.csv").read_text().splitlines()
+    row = dict(zip(header.split(","), map(float, last.split(","))))
+    seen = liver.observe()
+    assert row["time [s]"] == world.time
+    assert row["liver: elastic energy [J]"] == seen.elastic_energy and row["liver: volume [m^3]"] == seen.volume
+    assert next(value for column, value in row.items() if column.startswith("liver: removed cells")) == removed[-1]
+
+
 def random_world(rng):
     """A world of two blocks that are grown together, of any law, model, loads and tools that a scene has words for."""
     young, poisson = rng.uniform(3e3, 9e3), rng.uniform(0.1, 0.45)

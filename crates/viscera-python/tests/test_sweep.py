@@ -7,7 +7,10 @@ import subprocess
 import threading
 import time
 
-import pytest
+import distributed
+import pandas
+import pyarrow
+from pyarrow import parquet
 
 import viscera
 from test_engine import SCENE
@@ -45,16 +48,12 @@ def test_a_table_becomes_pandas_arrow_parquet_and_csv(tmp_path):
     frame = table.to_pandas()
     assert list(frame.columns) == ["body.bar.law.poisson", "time", "error", "sag"] and frame["sag"].tolist() == table["sag"]
     table.to_parquet(tmp_path / "t.parquet")
-    import pandas
-
     assert pandas.read_parquet(tmp_path / "t.parquet")["sag"].tolist() == table["sag"]
     table.to_csv(tmp_path / "t.csv")
     assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
 
 
 def test_columns_have_the_types_of_what_is_in_them_also_where_a_case_was_refused(tmp_path):
-    pyarrow = pytest.importorskip("pyarrow")
-    parquet = pytest.importorskip("pyarrow.parquet")
     changes = [
         {"body.bar.law.poisson": 0.3, "gravity": [0, -1, 0], "precision": "single"},
         {"body.bar.law.poisson": 0.6, "gravity": [0, -2, 0], "precision": "double"},
@@ -99,7 +98,6 @@ def count(path):
 
 def test_a_cluster_that_loses_a_worker_gives_the_table_of_the_threads(tmp_path):
     """One of two worker processes is killed with SIGKILL in the middle: its cases run again, and no row is lost or doubled."""
-    distributed = pytest.importorskip("distributed")
     scene, values = viscera.Scene.parse(SCENE), {"body.bar.law.young": [1000.0 * (3 + k) for k in range(10)]}
     wanted = viscera.sweep(scene, values, measure=sag)
     runs = tmp_path / "runs"
