@@ -134,7 +134,7 @@ class TissueVectorEnv(gymnasium.vector.VectorEnv):
     def close_extras(self, **kwargs: Any) -> None:
         self._pool.shutdown()
 
-    def render(self) -> tuple[np.ndarray, ...]:
+    def render(self):
         """The depth picture of each, as grey levels of 8 bits of shape (height, width, 3); near is bright."""
         return tuple(episode.picture() for episode in self.episodes)
 
