@@ -197,6 +197,11 @@ for (const engine of ['native', 'wasm'] as const) {
         await expect(page.locator('.tape')).toContainText('agrees');
         await expect(page.locator('.tape')).toBeHidden({ timeout: 120_000 });
         await expect(page.getByText(/replayed \d+ steps to the same (bits|numbers)/).last()).toBeVisible();
+        // What lies under the notice can be worked on.
+        const notice = (await page.locator('.notice').first().boundingBox())!;
+        const below = (x: number, y: number) =>
+          page.evaluate(([x, y]) => document.elementFromPoint(x!, y!)?.id, [x, y]);
+        expect(await below(notice.x + 20, notice.y + notice.height / 2)).toBe('view');
         await expect(page.locator('.notice.warning, .notice.error')).toHaveCount(0);
         await page.screenshot({
           path: `tests/artefacts/${engine}-${title.includes('cut') ? 'edge' : 'lobe'}.png`,
