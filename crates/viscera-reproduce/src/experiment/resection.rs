@@ -146,8 +146,8 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
     .setting(
         "damping",
         format!(
-            "{DAMPING} 1/s, where the scene itself has 3: vertices that change from one law to the other feed energy in, and less \
-             damping lets the liver run away"
+            "{DAMPING} 1/s, where the scene itself has 3: vertices that change from one law to the other feed energy in, and \
+             with 3 the liver runs away"
         ),
     )
     .setting("liver", format!("{cells} tetrahedra, {vertices} vertices"))
