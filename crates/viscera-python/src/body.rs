@@ -184,6 +184,18 @@ impl PyBody {
         &self.0.name
     }
 
+    /// Rate of its damping [1/s].
+    #[getter]
+    fn damping(&self) -> f64 {
+        self.0.damping
+    }
+
+    /// α of Rayleigh's damping [s].
+    #[getter]
+    fn stiffness_damping(&self) -> f64 {
+        self.0.stiffness_damping
+    }
+
     fn __repr__(&self) -> String {
         let model = self.0.model.recipe();
         let (kind, law) = (model.kind().info().name, model.tissue().kind().name());

@@ -60,8 +60,69 @@ def test_gradients_by_density_load_and_way_are_right(measured):
 def test_gradients_of_a_motion_are_handed_on_from_step_to_step():
     nodes = MESH.nodes_in("z-max")
     seen = {2: MESH.nodes[nodes], 4: MESH.nodes[nodes]}
-    motion = Motion(lambda p: block(p, damping=3.0), step=0.02, nodes=nodes, seen=seen, gravity=[0, -5, 0], damping=3.0)
+    motion = Motion(lambda p: block(p, damping=3.0), step=0.02, nodes=nodes, seen=seen, gravity=[0, -5, 0])
     check_gradient(motion, {"young": 8e3, "poisson": 0.4})
+
+
+def braked(p):
+    return block({"young": p["young"], "poisson": 0.4}, damping=p["damping"])
+
+
+@pytest.mark.parametrize("measured", ["positions", "forces"])
+def test_gradients_of_a_motion_by_its_damping_and_of_the_force_that_holds_it_are_right(measured):
+    """The body says what damps it; the force on its fixed end is that of the tissue there."""
+    nodes, held = MESH.nodes_in("z-max"), MESH.nodes_in("z-min")
+    steps = {"positions": {"nodes": nodes, "seen": {3: MESH.nodes[nodes]}}, "forces": {"force_on": held, "forces": {1: [0, 0, 0], 4: [0, 9, 0]}}}
+    motion = Motion(braked, step=0.02, gravity=[0, -5, 0], **steps[measured])
+    check_gradient(motion, {"young": 8e3, "damping": 3.0})
+
+
+def test_modulus_and_damping_come_back_from_a_motion_and_the_force_that_holds_it():
+    truth = {"young": 7e3, "damping": 4.0}
+    nodes, held = MESH.nodes_in("z-max"), MESH.nodes_in("z-min")
+    scheme = viscera.Implicit(newton="full", newton_tolerance=1e-11, linear_tolerance=1e-9)
+    body = viscera.World(gravity=[0, -5, 0], step=0.02, integrator=scheme).add(braked(truth))
+    seen, forces = {}, {}
+    for number in range(1, 11):
+        body.world.step()
+        if number % 2:
+            seen[number] = body.positions[nodes]
+        else:
+            forces[number] = (body.internal_forces - body.external_forces)[held].sum(axis=0)
+    for measured in ({"nodes": nodes, "seen": seen}, {"force_on": held, "forces": forces}):
+        result = fit([Motion(braked, step=0.02, gravity=[0, -5, 0], **measured)], {"young": 4e3, "damping": 1.0}, {"damping": (0.0, 50.0)})
+        assert result.converged
+        for name, value in truth.items():
+            assert result.parameters[name] == pytest.approx(value, rel=1e-5)
+
+
+def test_what_the_gradients_of_a_motion_leave_out_is_refused_with_a_reason():
+    nodes = MESH.nodes_in("z-max")
+    measured = {"step": 0.02, "nodes": nodes, "seen": {1: MESH.nodes[nodes]}}
+    with pytest.raises(ValueError, match="stiffness_damping = 0.01 s: its forces turn with the stiffness"):
+        fit([Motion(lambda p: block({**p, "poisson": 0.4}, stiffness_damping=0.01), **measured)], {"young": 8e3})
+
+    def heavy(p):
+        law = viscera.NeoHookean.from_young_poisson(8e3, 0.4)
+        return viscera.Body(MESH, p["density"], model=viscera.TotalLagrangian(law), fix="z-min")
+
+    def loaded(p):
+        return block({"young": 8e3, "poisson": 0.4}, load=viscera.Load.traction("z-max", [p["pull"], 0.0, 0.0]))
+
+    for body, p in ((heavy, {"density": 1000.0}), (loaded, {"pull": 10.0})):
+        with pytest.raises(ValueError, match=f"`{next(iter(p))}` changes the masses of the body or its loads"):
+            fit([Motion(body, **measured)], p)
+    with pytest.raises(ValueError, match="nodes that are not fixed"):
+        fit([Motion(braked, step=0.02, force_on=nodes, forces={1: [0, 0, 0]})], {"young": 8e3, "damping": 1.0})
+    for wrong, says in (
+        ({"seen": {1: MESH.nodes}}, "give `nodes`"),
+        ({"forces": {1: [0, 0, 0]}}, "give `force_on`"),
+        ({}, "nothing was measured"),
+        ({"nodes": nodes, "seen": {0: MESH.nodes[nodes]}}, "numbered from 1"),
+        ({**measured, "deviation": 0.0}, "must be positive"),
+    ):
+        with pytest.raises(ValueError, match=says):
+            Motion(braked, **{"step": 0.02, **wrong})
 
 
 def test_young_and_poisson_come_back_from_noisy_points_of_the_skin():

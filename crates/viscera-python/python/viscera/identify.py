@@ -148,47 +148,87 @@ class Equilibrium:
 
 @dataclass
 class Motion:
-    """A body in motion, of which positions were measured at some of its steps.
+    """A body in motion, of which positions, or the force on what holds it, or both were measured at some of its steps.
 
-    ``body``: makes the body from a dict of parameters, which are of its law alone; without stiffness damping. It starts at rest, or at ``start`` with
-    ``velocity`` (shape (n, 3)), and moves by backward Euler steps of ``step`` [s], solved in full. ``seen``: for a step's number, from
-    1, the positions of ``nodes`` [m, shape (k, 3)]. ``damping``: the body's rate [1/s], as the body has it.
+    ``body``: makes the body from a dict of parameters: of its law, and of its ``damping``. It starts at rest, or at ``start`` with ``velocity``
+    (shape (n, 3)), and moves by backward Euler steps of ``step`` [s], solved in full. ``seen``: for a step's number, from 1, the positions of
+    ``nodes`` [m, shape (k, 3), NaN for coordinates that were not seen]. ``forces``: for a step's number the force [N, shape (3,)] on ``force_on``,
+    nodes that are fixed. ``deviation`` [m] and ``force_deviation`` [N] are as for `Equilibrium`.
     """
 
     body: BodyOf
     step: float
-    nodes: ArrayLike
-    seen: Mapping[int, np.ndarray]
+    nodes: ArrayLike | None = None
+    seen: Mapping[int, np.ndarray] = field(default_factory=dict)
     gravity: Sequence[float] = (0.0, -9.81, 0.0)
-    damping: float = 0.0
     deviation: float = 1.0
     start: np.ndarray | None = None
     velocity: np.ndarray | None = None
+    force_on: ArrayLike | None = None
+    forces: Mapping[int, ArrayLike] = field(default_factory=dict)
+    force_deviation: float = 1.0
     solver: str = "direct"
 
     def __post_init__(self):
-        if not self.seen:
-            raise ValueError("nothing was measured: give positions for at least one step")
+        if not (self.seen or self.forces):
+            raise ValueError("nothing was measured: give positions (`seen`) or `forces` for at least one step")
+        if self.seen and self.nodes is None:
+            raise ValueError("say where the positions are: give `nodes`")
+        if self.forces and self.force_on is None:
+            raise ValueError("say where the forces are: give `force_on`, nodes that are fixed")
+        if not (self.deviation > 0 and self.force_deviation > 0):
+            raise ValueError("standard deviations must be positive")
+        if first := [number for number in (*self.seen, *self.forces) if number < 1]:
+            raise ValueError(f"step {first[0]} was not made: steps are numbered from 1")
+
+    def _check(self, made: Body, p: Parameters, gradients: bool) -> None:
+        """Refuses what the gradients leave out."""
+        if made.stiffness_damping:
+            raise ValueError(
+                f"stiffness_damping = {made.stiffness_damping} s: its forces turn with the stiffness, whose derivative a motion's gradients do not "
+                "have; describe the body with `damping`"
+            )
+        if not gradients:
+            return
+
+        def given(body: Body) -> np.ndarray:
+            simulated = _simulate(body, gravity=self.gravity)
+            return np.concatenate([simulated.masses, simulated.external_forces.ravel()])
+
+        for name in p:
+            if _ends(self.body, p, name, given).any():
+                raise ValueError(
+                    f"`{name}` changes the masses of the body or its loads: a motion identifies parameters of the law and of `damping`; an "
+                    "`Equilibrium` identifies loads and densities"
+                )
 
     def residuals(self, p: Parameters, gradients: bool = True):
-        """Computed less measured, over the standard deviation, and their derivatives by the parameters; shapes (m,), (m, k)."""
+        """Computed less measured, over the standard deviations, and their derivatives by the parameters; shapes (m,), (m, k)."""
         scheme = Implicit(newton="full", newton_tolerance=1e-11, linear_tolerance=1e-9)
-        body = _simulate(self.body(p), gravity=self.gravity, step=self.step, integrator=scheme)
+        made = self.body(p)
+        self._check(made, p, gradients)
+        body = _simulate(made, gravity=self.gravity, step=self.step, integrator=scheme)
+        held = np.asarray(self.force_on if self.force_on is not None else [], dtype=np.int64)
+        if not all(body.motions[node] == "fixed" for node in held):
+            raise ValueError("`force_on` holds nodes that are not fixed: the force on others is also their inertia")
         if self.start is not None:
             body.positions = self.start
         if self.velocity is not None:
             body.velocities = self.velocity
-        nodes, masses = np.asarray(self.nodes), body.masses[:, None]
+        nodes, masses = np.asarray(self.nodes if self.nodes is not None else [], dtype=np.int64), body.masses[:, None]
         still = np.zeros((len(p), *body.mesh.nodes.shape))
-        moved, speed = still, still
-        inertia = 1 / self.step**2 + self.damping / self.step
+        moved, speed, before = still, still, body.positions
+        inertia = 1 / self.step**2 + made.damping / self.step
+        braking = np.array([_ends(self.body, p, name, lambda body: np.array(body.damping)) for name in p]) if gradients else still
         rows, columns = [], []
-        for number in range(1, max(self.seen) + 1):
+        for number in range(1, max((*self.seen, *self.forces)) + 1):
             body.world.step()
             x = body.positions
             if gradients:
+                slopes = _varied_forces(self.body, p, x)
                 handed_on = masses * (inertia * moved + speed / self.step)
-                after = body.respond(handed_on - _varied_forces(self.body, p, x), inertia=inertia, solver=self.solver)
+                braked = braking[:, None, None] * (masses * (x - before) / self.step)
+                after = body.respond(handed_on - slopes - braked, inertia=inertia, solver=self.solver)
                 moved, speed = after, (after - moved) / self.step
             if number in self.seen:
                 measured = np.asarray(self.seen[number], dtype=float)
@@ -196,6 +236,13 @@ class Motion:
                 rows.append((x[nodes] - measured)[known] / self.deviation)
                 if gradients:
                     columns.append(np.array([u[nodes][known] for u in moved]).T / self.deviation)
+            if number in self.forces:
+                reaction = (body.internal_forces - body.external_forces)[held].sum(axis=0)
+                rows.append((reaction - np.asarray(self.forces[number], dtype=float)) / self.force_deviation)
+                if gradients:
+                    by_parameter = [(df + body.product_at(x, u))[held].sum(axis=0) for df, u in zip(slopes, moved)]
+                    columns.append(np.array(by_parameter).T / self.force_deviation)
+            before = x
         return np.concatenate(rows), np.concatenate(columns) if gradients else None
 
 
