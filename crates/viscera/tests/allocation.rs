@@ -40,7 +40,9 @@ fn operation<T: Precision>(recipe: Box<dyn ModelRecipe>, hexahedra: bool, integr
     world.add_instrument(Grasper { path, radius: 0.025, close: 0.02, open: Some(0.12), ..Grasper::default() }).unwrap();
     let across = vec![(0.1, Vec3::new(-0.01, -0.02, 0.07)), (0.25, Vec3::new(0.05, 0.06, 0.09))];
     let path = Curve::piecewise_linear(across).unwrap();
-    world.add_instrument(Cautery { path, radius: 0.02, on: (0.1, 0.25), ..Cautery::default() }).unwrap();
+    if !hexahedra {
+        world.add_instrument(Cautery { path, radius: 0.02, on: (0.1, 0.25), ..Cautery::default() }).unwrap();
+    }
     world
 }
 

@@ -234,12 +234,13 @@ fn when_the_device_is_lost_the_page_may_lead_its_instrument() {
         loop {
             let lead = Command::MoveInstrument { instrument: 0, tip, direction, roll: 0.0, trigger: 0.0, stamp: None };
             visitor.say(lead).await;
-            if (visitor.frame().await.instruments[0].tip[1] - tip[1]).abs() < 1e-9 {
+            let led = (visitor.frame().await.instruments[0].tip[1] - tip[1]).abs() < 1e-9;
+            // Before the first step it is nobody's, and the page may lead it as well.
+            if led && !server.has_haptics() {
                 break;
             }
         }
     });
-    assert!(!server.has_haptics());
     let report = server.stop().expect("there was a device");
     assert!(matches!(report.channel.end, End::Device(DeviceError::Lost { .. })), "{:?}", report.channel.end);
 }

@@ -32,7 +32,9 @@ fn operation<T: Precision>(mesh: VolumeMesh, recipe: Box<dyn ModelRecipe>, integ
     world.add_instrument(Grasper { path, radius: 0.025, close: 0.02, open: Some(0.12), ..Grasper::default() }).unwrap();
     let across = vec![(0.03, Vector::new(-0.01, -0.02, 0.07)), (0.12, Vector::new(0.05, 0.06, 0.09))];
     let path = Curve::piecewise_linear(across).unwrap();
-    world.add_instrument(Cautery { path, radius: 0.02, on: (0.03, 0.12), ..Cautery::default() }).unwrap();
+    if !hexahedra {
+        world.add_instrument(Cautery { path, radius: 0.02, on: (0.03, 0.12), ..Cautery::default() }).unwrap();
+    }
     world
 }
 
