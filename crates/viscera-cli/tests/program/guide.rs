@@ -98,9 +98,12 @@ fn every_command_of_the_book_is_known_with_its_options() {
     let desk = Desk::new();
     let mut looked_at = 0;
     let root = docs().parent().unwrap().to_owned();
-    for page in pages(&docs()).into_iter().chain([root.join("README.md")]) {
+    for page in pages(&docs()).into_iter().chain(["README.md", "CONTRIBUTING.md"].map(|name| root.join(name))) {
         let text = fs::read_to_string(&page).unwrap();
-        for line in text.lines().filter_map(|line| line.strip_prefix("    viscera ")) {
+        let command = |line| {
+            ["    viscera ", "    cargo run --release -- "].iter().find_map(|ahead| str::strip_prefix(line, ahead))
+        };
+        for line in text.lines().filter_map(command) {
             let line = line.split("  #").next().unwrap_or_default();
             let words = words(line);
             let depth = if ["bench", "mesh"].contains(&words[0].as_str()) { 2 } else { 1 };
