@@ -27,9 +27,9 @@ const MAX_RETRIES: u32 = 5;
 pub struct StepReport {
     /// Time at the end [s].
     pub time: f64,
-    /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it.
+    /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it, or its full equations were not solved at once.
     pub substeps: u32,
-    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way.
+    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, or full equations were not solved.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,

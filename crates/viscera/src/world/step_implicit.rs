@@ -6,18 +6,52 @@ use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, Stages};
 
+/// How often a step that is not solved in full is made again in twice as many parts.
+const MOST_DIVISIONS: u32 = 3;
+
+/// A body, and what its solver did.
+type Unsolved = (usize, ImplicitReport);
+
 impl<T: Scalar> World<T> {
-    /// Moves the bodies by one implicit step. A linear solve that ended early is reported; a full solve that did not balance
-    /// the forces is an error.
+    /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
+    /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,
         settings: &Implicit,
         stages: Stages,
     ) -> Result<Motion, StepError> {
-        let parts = stages.run(Stage::Instruments, || self.approach_in_time(span));
+        let mut retries = 0;
+        loop {
+            let parts = stages.run(Stage::Instruments, || self.approach_in_time(span)) << retries;
+            let (report, unsolved) = self.advance_implicitly(span, settings, parts, stages);
+            let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
+            let error = match unsolved {
+                _ if !within => {
+                    self.undo();
+                    self.diverged()
+                }
+                Some((number, own)) => self.not_converged(number, &own),
+                None => return Ok(Motion { substeps: parts, retries, implicit: Some(report) }),
+            };
+            if settings.newton == Newton::Linearised || retries == MOST_DIVISIONS {
+                return Err(error);
+            }
+            self.undo();
+            retries += 1;
+        }
+    }
+
+    /// Moves all bodies by equal parts of the step; gives what the solvers did, and the first body whose full equations were not solved.
+    fn advance_implicitly(
+        &mut self,
+        span: &Span,
+        settings: &Implicit,
+        parts: u32,
+        stages: Stages,
+    ) -> (ImplicitReport, Option<Unsolved>) {
         let gravity = Vec3::from(self.config.gravity).cast();
-        let (mut report, mut failed) = (ImplicitReport::NOTHING, None);
+        let (mut report, mut unsolved) = (ImplicitReport::NOTHING, None);
         let share = |part: u32| f64::from(part) / f64::from(parts);
         for part in 0..parts {
             let at = |part: u32| span.from + (span.to - span.from) * share(part);
@@ -33,19 +67,15 @@ impl<T: Scalar> World<T> {
                     stages.run(Stage::Newton, || implicit::advance(body, memory, settings, from, dt, &drive, stages));
                 body.state.past.is_known &= parts == 1;
                 if !own.converged && settings.newton != Newton::Linearised {
-                    failed = failed.or(Some((number, own)));
+                    unsolved = unsolved.or(Some((number, own)));
                 }
                 report = report.worst(own);
             }
+            if unsolved.is_some() {
+                break;
+            }
         }
-        if !stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds())) {
-            self.undo();
-            return Err(self.diverged());
-        }
-        match failed {
-            Some((number, own)) => Err(self.not_converged(number, &own)),
-            None => Ok(Motion { substeps: parts, retries: 0, implicit: Some(report) }),
-        }
+        (report, unsolved)
     }
 
     /// Lets instruments take hold or let go, and has all tissue looked at that is near one that touches; gives in how many parts the
