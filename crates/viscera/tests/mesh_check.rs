@@ -40,12 +40,12 @@ fn a_proper_mesh_is_left_alone() {
     let (mesh, report) = two_tets().checked().expect("a proper mesh");
     assert_eq!(mesh, two_tets());
     assert!(report.is_clean());
-    assert_eq!(report.to_string(), "5 nodes, 2 cells, 5.0000e-1 m³");
+    assert_eq!(report.to_string(), "5 nodes, 2 cells, 0.500 m³");
     let (mesh, report) = one_hex().checked().expect("a proper mesh");
     assert_eq!(mesh, one_hex());
     assert!(report.is_clean());
     assert!((report.flattest_quality - 1.0).abs() < 1e-14, "a cube is regular: {}", report.flattest_quality);
-    assert_eq!(report.to_string(), "8 nodes, 1 cells, 1.0000e0 m³");
+    assert_eq!(report.to_string(), "8 nodes, 1 cells, 1.000 m³");
 }
 
 /// A regular tetrahedron has quality 1, whatever its size.

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::Point;
+use super::{Point, measure};
 
 /// What the check of a mesh found and repaired: see [`TetMesh::checked`](super::TetMesh::checked).
 ///
@@ -93,7 +93,7 @@ impl MeshReport {
 
 impl fmt::Display for MeshReport {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        write!(out, "{} nodes, {} cells, {:.4e} m³", self.nodes, self.cells, self.volume)?;
+        write!(out, "{} nodes, {} cells, {}", self.nodes, self.cells, measure::volume(self.volume))?;
         self.remarks().iter().try_for_each(|remark| write!(out, "\n{remark}"))
     }
 }

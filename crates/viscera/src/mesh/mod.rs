@@ -9,6 +9,7 @@ mod gauss;
 mod generate;
 mod groups;
 mod isosurface_stuffing;
+mod measure;
 mod mesh_report;
 mod quality;
 mod region;

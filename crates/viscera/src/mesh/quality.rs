@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::{HexMesh, Point, TET_EDGES, TET_FACES, TetMesh};
+use super::{HexMesh, Point, TET_EDGES, TET_FACES, TetMesh, measure};
 
 /// Shape of one tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,8 +176,9 @@ impl TetMesh {
 
 impl fmt::Display for QualityReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { cells, nodes, total_volume, inverted, worst_cell, .. } = self;
-        writeln!(f, "{cells} tetrahedra, {nodes} nodes, {total_volume:.4e} m³, {inverted} inverted or flat")?;
+        let Self { cells, nodes, inverted, worst_cell, .. } = self;
+        let volume = measure::volume(self.total_volume);
+        writeln!(f, "{cells} tetrahedra, {nodes} nodes, {volume}, {inverted} inverted or flat")?;
         writeln!(f, "worst cell: {worst_cell} (radius ratio {:.4})", self.radius_ratio.smallest)?;
         writeln!(f, "{:<24}{:>12}{:>12}{:>12}", "", "smallest", "mean", "largest")?;
         let rows: [(&str, &Spread, f64); 7] = [

@@ -1,6 +1,7 @@
 use std::fmt;
 
 use super::groups::Groups;
+use super::measure;
 use super::surface_check::SurfaceReport;
 use super::{SignedDistance, SurfaceError, SurfaceMesh, TetMesh, TetTopology, TriangleTree};
 
@@ -116,15 +117,15 @@ fn pieces(mesh: &TetMesh) -> usize {
 impl fmt::Display for FillingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.surface)?;
-        let Self { edge, cells, volume, .. } = self;
-        let lost = 100.0 * self.volume_lost;
-        writeln!(f, "{cells} tetrahedra of edge {edge:.4e} m, {volume:.4e} m³, {lost:.2} % of the volume lost")?;
+        let (edge, volume) = (measure::length(self.edge), measure::volume(self.volume));
+        let (cells, lost) = (self.cells, 100.0 * self.volume_lost);
+        writeln!(f, "{cells} tetrahedra of edge {edge}, {volume}, {lost:.2} % of the volume lost")?;
         if self.thin_area > THIN_AREA {
             writeln!(
                 f,
-                "{:.1} % of the surface covers parts thinner than {EDGES_ACROSS} edges, which may be lost or torn; an edge of {:.3e} m would do",
+                "{:.1} % of the surface covers parts thinner than {EDGES_ACROSS} edges, which may be lost or torn; an edge of {} would do",
                 100.0 * self.thin_area,
-                self.sufficient_edge
+                measure::length(self.sufficient_edge)
             )?;
         }
         let expected = self.surface.components - self.surface.cavities;

@@ -87,7 +87,7 @@ fn a_hole_is_named_with_its_place() {
     assert_eq!(
         error,
         format!(
-            "the surface has 1 hole, the longest 8.536e-2 m around, with 3 edges, near ({:.4}, {:.4}, 0.1000) m; close it in the program that made the surface",
+            "the surface has 1 hole, the longest 85.36 mm around, with 3 edges, near ({:.4}, {:.4}, 0.1000) m; close it in the program that made the surface",
             near.x, near.y
         )
     );
@@ -177,7 +177,7 @@ fn a_thin_plate_is_reported_with_the_edge_that_would_do() {
     let (_, report) = TetMesh::from_surface(&plate, 0.006).unwrap();
     assert!(report.thin_area > 0.9, "{report}");
     assert_relative_eq!(report.sufficient_edge, 0.004 / 1.5, max_relative = 1e-9);
-    assert!(report.to_string().contains("an edge of 2.667e-3 m would do"), "{report}");
+    assert!(report.to_string().contains("an edge of 2.667 mm would do"), "{report}");
     let (_, sufficient) = TetMesh::from_surface(&plate, report.sufficient_edge).unwrap();
     assert!(sufficient.volume_lost < 0.2 * report.volume_lost.max(0.2), "{report}{sufficient}");
     assert_eq!(sufficient.pieces, 1);

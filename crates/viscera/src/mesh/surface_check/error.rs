@@ -1,4 +1,4 @@
-use super::super::{GenerateError, Point};
+use super::super::{GenerateError, Point, measure};
 
 /// Why a surface cannot be filled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -26,8 +26,8 @@ pub enum SurfaceError {
     },
     /// The surface does not enclose a volume: some edges have one triangle only.
     #[error(
-        "the surface has {count} hole{s}, the longest {length:.3e} m around, with {edges} edges, near ({x:.4}, {y:.4}, {z:.4}) m; close {it} in the program that made the surface",
-        s = if *count == 1 { "" } else { "s" }, it = if *count == 1 { "it" } else { "them" },
+        "the surface has {count} hole{s}, the longest {around} around, with {edges} edges, near ({x:.4}, {y:.4}, {z:.4}) m; close {it} in the program that made the surface",
+        around = measure::length(*length), s = if *count == 1 { "" } else { "s" }, it = if *count == 1 { "it" } else { "them" },
         x = near.x, y = near.y, z = near.z
     )]
     Holes {

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::super::Point;
+use super::super::{Point, measure};
 use super::SurfaceError;
 
 /// A loop of edges that have one triangle only.
@@ -95,7 +95,7 @@ impl fmt::Display for SurfaceReport {
         if self.cavities > 0 {
             write!(f, " ({})", counted(self.cavities, "cavity", "cavities"))?;
         }
-        writeln!(f, ", {:.4e} m², {:.4e} m³", self.area, self.volume)?;
+        writeln!(f, ", {}, {}", measure::area(self.area), measure::volume(self.volume))?;
         let mended = [
             (self.merged_nodes, counted(self.merged_nodes, "node on another one", "nodes on others"), "merged"),
             (
@@ -117,7 +117,8 @@ impl fmt::Display for SurfaceReport {
         for hole in &self.holes {
             let Point { x, y, z } = hole.near;
             let edges = hole.nodes.len();
-            writeln!(f, "hole: {edges} edges, {:.3e} m around, near ({x:.4}, {y:.4}, {z:.4}) m", hole.length)?;
+            let around = measure::length(hole.length);
+            writeln!(f, "hole: {edges} edges, {around} around, near ({x:.4}, {y:.4}, {z:.4}) m")?;
         }
         for edge in &self.non_manifold_edges {
             let Point { x, y, z } = edge.near;
