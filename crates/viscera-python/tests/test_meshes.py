@@ -48,7 +48,7 @@ def test_a_plate_thinner_than_its_cells_says_which_edge_would_do():
     plate = viscera.TetMesh.box_grid([10, 1, 10], [0.1, 0.012, 0.1]).surface()
     _, report = viscera.TetMesh.filled(plate, 0.01)
     assert report.thin_area > 0.5 and report.sufficient_edge == pytest.approx(0.012 / 1.5, rel=1e-6)
-    assert "an edge of 8.000e-3 m would do" in report.text
+    assert "an edge of 8.000 mm would do" in report.text
 
 
 def test_an_open_surface_is_refused_with_its_hole():
