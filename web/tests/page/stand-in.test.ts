@@ -201,8 +201,9 @@ test('static files with no program behind them begin with the engine in the page
   page.on('pageerror', (error) => complaints.push(String(error)));
   await page.goto('/?quality=least');
   if (existsSync('src/engine/generated/viscera_web_bg.wasm')) {
-    await expect.poll(async () => (await state(page)).engine).toBe('wasm');
-    await expect.poll(async () => (await state(page)).frame !== undefined).toBe(true);
+    // At first there is no page to ask.
+    await page.waitForFunction(() => window.viscera?.state().frame !== undefined);
+    expect((await state(page)).engine).toBe('wasm');
   } else {
     await expect(page.getByText('The engine in this page is not to be had.')).toBeVisible();
     await expect(page.getByText('built without the engine')).toBeVisible();
