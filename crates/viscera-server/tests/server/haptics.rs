@@ -1,7 +1,7 @@
 //! A haptic device beside a page: it presses into tissue, the page sees it, the hand feels it.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use viscera::executor::Executor;
 use viscera_haptics::{
@@ -15,27 +15,13 @@ use viscera_session::message::{Answer, Bytes, Command, Request};
 use crate::ask;
 use crate::visitor::{BAR, Visitor, runtime, session};
 
-/// The bar without weight, and a probe whose round tip is 8 mm above its free end, pointing down. It is too thick to pass
-/// between nodes.
-const PRESSED: &str = r#"
-gravity = [0, 0, 0]
-duration = "1 s"
-step = "10 ms"
-integrator = { kind = "backward-euler" }
-
-[body.bar]
-mesh = { generate = "box", size = [0.04, 0.04, 0.12], cells = [2, 2, 6] }
-density = 1000
-damping = 5
-law = { kind = "stable-neo-hookean", young = 20e3, poisson = 0.4 }
-model = { kind = "total-lagrangian" }
-fix = "z-min"
-
-[instrument.probe]
-kind = "probe"
-path = [0.02, 0.06, 0.1]
-shaft = { radius = 0.012 }
-"#;
+/// The bar without weight, damped, and a probe whose round tip is 8 mm above its free end, pointing down. It is too thick to pass between
+/// nodes.
+static PRESSED: LazyLock<String> = LazyLock::new(|| {
+    let damped = BAR.replace("density = 1000\n", "density = 1000\ndamping = 5\n");
+    let probe = "[instrument.probe]\nkind = \"probe\"\npath = [0.02, 0.06, 0.1]\nshaft = { radius = 0.012 }\n";
+    format!("gravity = [0, 0, 0]\n{damped}\n{probe}")
+});
 
 /// How far the hand presses [m], and in which time [s].
 const DEPTH: f64 = 0.02;
@@ -98,17 +84,12 @@ fn a_device_presses_tissue_that_the_page_sees_and_the_hand_feels_and_is_released
     let released = Arc::new(AtomicBool::new(false));
     let device = EmulatedDevice::new(Rating::TOUCH, pressing_hand(Arc::clone(&press)));
     let device = Watched { device, felt: Arc::clone(&felt), released: Arc::clone(&released) };
-    let session = session(PRESSED);
+    let session = session(&PRESSED);
     let haptics = haptics(&session, device);
     let server = start(session, haptics);
     runtime().block_on(async {
         let (mut visitor, _) = Visitor::enter(server.address()).await;
-        visitor
-            .until(|answer| match answer {
-                Answer::Scene(scene) if !scene.instruments[0].scripted => Some(()),
-                _ => None,
-            })
-            .await;
+        visitor.until_a_hand_has_the_tool().await;
         let rest = visitor.frame().await;
         assert!((rest.instruments[0].tip[1] - 0.06).abs() < 1e-9, "it stays where it was: {:?}", rest.instruments);
         press.store(true, Ordering::Relaxed);
@@ -141,18 +122,13 @@ fn a_device_presses_tissue_that_the_page_sees_and_the_hand_feels_and_is_released
 
 #[test]
 fn the_device_wins_over_a_page_that_wants_its_instrument_and_the_page_hears_why() {
-    let session = session(PRESSED);
+    let session = session(&PRESSED);
     let device = EmulatedDevice::new(Rating::TOUCH, Hand::on_rails(|_| Vector::ZERO));
     let haptics = haptics(&session, device);
     let server = start(session, haptics);
     runtime().block_on(async {
         let (mut visitor, _) = Visitor::enter(server.address()).await;
-        visitor
-            .until(|answer| match answer {
-                Answer::Scene(scene) if !scene.instruments[0].scripted => Some(()),
-                _ => None,
-            })
-            .await;
+        visitor.until_a_hand_has_the_tool().await;
         let tip = [0.02, 0.2, 0.1];
         let direction = [0.0, -1.0, 0.0];
         let lead = Command::MoveInstrument { instrument: 0, tip, direction, roll: 0.0, trigger: 0.0, stamp: None };
@@ -189,7 +165,7 @@ fn the_device_wins_over_a_page_that_wants_its_instrument_and_the_page_hears_why(
 #[test]
 fn a_recording_of_a_device_replays_to_the_same_bits() {
     let press = Arc::new(AtomicBool::new(false));
-    let session = session(PRESSED);
+    let session = session(&PRESSED);
     let haptics = haptics(&session, EmulatedDevice::new(Rating::TOUCH, pressing_hand(Arc::clone(&press))));
     let server = start(session, haptics);
     let file = runtime().block_on(async {
@@ -223,7 +199,7 @@ fn a_recording_of_a_device_replays_to_the_same_bits() {
 
 #[test]
 fn when_the_device_is_lost_the_page_may_lead_its_instrument() {
-    let session = session(PRESSED);
+    let session = session(&PRESSED);
     let imperfections = Imperfections { unplugged: Some(0.3), ..Imperfections::default() };
     let device = EmulatedDevice::imperfect(Rating::TOUCH, Hand::on_rails(|_| Vector::ZERO), imperfections);
     let haptics = haptics(&session, device);
@@ -255,9 +231,9 @@ fn what_a_device_cannot_lead_is_refused_at_the_start_with_its_reason() {
         Server::start_with(at, session(text), Some(haptics)).err().expect("it is refused").to_string()
     };
     let linearised = Extrapolation::Linearised;
-    assert_eq!(refused(PRESSED, 5, linearised), "the scene has no instrument 5; it has 0 (probe)");
+    assert_eq!(refused(&PRESSED, 5, linearised), "the scene has no instrument 5; it has 0 (probe)");
     assert!(refused(BAR, 0, linearised).contains("add a grasper or a probe"));
-    assert!(refused(PRESSED, 0, Extrapolation::Direct).contains("take `linearised`"));
+    assert!(refused(&PRESSED, 0, Extrapolation::Direct).contains("take `linearised`"));
     let slow = refused(&PRESSED.replace("10 ms", "200 ms"), 0, linearised);
     assert!(slow.contains("lasts 200 ms") && slow.contains("shorten `step`"), "{slow}");
     assert!(instrument_for_a_hand(&session(BAR), None).is_err());

@@ -101,6 +101,15 @@ impl Visitor {
         }
     }
 
+    /// Hears until the scene no longer leads its first tool.
+    pub(crate) async fn until_a_hand_has_the_tool(&mut self) {
+        let led = |answer| match answer {
+            Answer::Scene(scene) if !scene.instruments[0].scripted => Some(()),
+            _ => None,
+        };
+        self.until(led).await;
+    }
+
     pub(crate) async fn frame(&mut self) -> FrameMessage {
         self.until(|answer| if let Answer::Frame(frame) = answer { Some(frame) } else { None }).await
     }
