@@ -6,6 +6,7 @@ mod built_in;
 mod check;
 mod emulated;
 mod failure;
+mod haptic_figures;
 mod instruction_set;
 mod interrupt;
 mod mesh;

@@ -12,8 +12,9 @@ use viscera_session::message::{Command, Refusal, Request};
 use viscera_session::{Session, library};
 
 use crate::arguments::ServeArguments;
-use crate::emulated::{Emulated, say_figures};
+use crate::emulated::Emulated;
 use crate::failure::Failure;
+use crate::haptic_figures::say_figures;
 use crate::interrupt::Interrupt;
 use crate::terminal;
 
