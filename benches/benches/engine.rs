@@ -10,8 +10,10 @@ use std::time::{Duration, Instant};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode};
 use viscera::body::Body;
+use viscera::curve::Curve;
 use viscera::dynamics::implicit::{Implicit, MatrixForm};
 use viscera::executor::Executor;
+use viscera::instrument::Probe;
 use viscera::material::{
     Lame, LinearElastic, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
 };
@@ -188,10 +190,7 @@ impl Suite<'_> {
     /// Removes a lump of tetrahedra, one in fifty, as a cut does; the time per removed one.
     fn removal<T: Precision>(&self, name: &str, model: &dyn ForceModel<T>, mesh: &VolumeMesh) {
         let middle = Vec3::from(BEAM) * 0.5;
-        let distance = |&cell: &u32| (mesh.nodes()[mesh.cell(cell as usize)[0] as usize] - middle).squared_norm();
-        let mut cells: Vec<u32> = (0..mesh.cell_count() as u32).collect();
-        cells.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        cells.truncate(mesh.cell_count() / 50);
+        let cells = nearest_cells(mesh, middle, mesh.cell_count() / 50);
         let id = format!("removal/{name}/of-{}", mesh.cell_count());
         self.measure::<T>(&id, cells.len(), Yardstick::None, || {
             let mut model = model.clone_box();
@@ -200,6 +199,35 @@ impl Suite<'_> {
             begin.elapsed()
         });
     }
+
+    /// The same through a world with a tool near, and all that goes with a cut: masses, loads, the skin that the tool touches.
+    fn removal_in_world<T: Precision>(&self, name: &str, mesh: &VolumeMesh, recipe: Box<dyn ModelRecipe>) {
+        let mut world = World::<T>::new(WorldConfig::default()).unwrap();
+        let body = world.add(Body::new(mesh.clone(), 1000.0).boxed_model(recipe)).unwrap();
+        let path = Curve::constant(Vec3::new(0.2, 0.0, 0.0));
+        world.add_instrument(Probe { path, ..Probe::default() }).unwrap();
+        let snapshot = world.snapshot();
+        let cells = nearest_cells(mesh, Vec3::from(BEAM) * 0.5, CUT);
+        let id = format!("removal/{name}/in-world/of-{}", mesh.cell_count());
+        self.measure::<T>(&id, cells.len(), Yardstick::None, || {
+            world.restore(&snapshot).unwrap();
+            let begin = Instant::now();
+            world.remove_cells(body, black_box(&cells)).unwrap();
+            begin.elapsed()
+        });
+    }
+}
+
+/// Cells that a cautery takes at once.
+const CUT: usize = 20;
+
+/// The cells nearest to a place.
+fn nearest_cells(mesh: &VolumeMesh, place: Vec3<f64>, count: usize) -> Vec<u32> {
+    let distance = |&cell: &u32| (mesh.nodes()[mesh.cell(cell as usize)[0] as usize] - place).squared_norm();
+    let mut cells: Vec<u32> = (0..mesh.cell_count() as u32).collect();
+    cells.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    cells.truncate(count);
+    cells
 }
 
 /// What is measured, and whether on two threads.
@@ -256,6 +284,7 @@ fn suite<T: Precision>(suite: &Suite<'_>) {
             suite.removal(name, model.as_ref(), &mesh);
             suite.substep::<T>(name, &mesh, recipe, flops, &one);
         }
+        suite.removal_in_world::<T>("total-lagrangian", &mesh, Box::new(TotalLagrangian::new(stable())));
         let direct = Box::new(TotalLagrangian::new(stvk()));
         suite.substep::<T>("total-lagrangian/st-venant-kirchhoff", &mesh, direct, Some(200.0), &two);
         let penalty = VolumePenalty::<T>::new(&tetrahedra, 1e4).unwrap();

@@ -31,17 +31,18 @@ impl Boundary {
     }
 
     pub(super) fn surface<'a>(&'a self, removed: &'a [bool]) -> impl Iterator<Item = SurfaceTriangle> + 'a {
+        (0..self.faces.len() as u32).filter_map(|face| self.triangle(face, removed))
+    }
+
+    /// The triangle of the surface that a face is now; none inside of the body, and in the void.
+    pub(super) fn triangle(&self, face: u32, removed: &[bool]) -> Option<SurfaceTriangle> {
+        let Face { nodes: [a, b, c], cells: (first, second) } = self.faces[face as usize];
         let there = |cell: u32| !removed[cell as usize];
-        let triangle = move |face: &Face| {
-            let [a, b, c] = face.nodes;
-            let (first, second) = face.cells;
-            match (there(first), second.map(there)) {
-                (true, None) => Some(SurfaceTriangle { nodes: [a, b, c], cut: false }),
-                (true, Some(false)) => Some(SurfaceTriangle { nodes: [a, b, c], cut: true }),
-                (false, Some(true)) => Some(SurfaceTriangle { nodes: [a, c, b], cut: true }),
-                _ => None,
-            }
-        };
-        self.faces.iter().filter_map(triangle)
+        match (there(first), second.map(there)) {
+            (true, None) => Some(SurfaceTriangle { nodes: [a, b, c], cut: false }),
+            (true, Some(false)) => Some(SurfaceTriangle { nodes: [a, b, c], cut: true }),
+            (false, Some(true)) => Some(SurfaceTriangle { nodes: [a, c, b], cut: true }),
+            _ => None,
+        }
     }
 }

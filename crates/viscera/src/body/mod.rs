@@ -13,6 +13,7 @@ mod muscle;
 mod placement;
 mod removals;
 mod simulated;
+mod skin;
 mod state;
 mod static_answer;
 mod stress;

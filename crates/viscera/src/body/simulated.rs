@@ -1,4 +1,5 @@
 use super::boundary::{Boundary, SurfaceTriangle};
+use super::skin::Skin;
 use super::supports::{filters, motions};
 use super::{
     Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoosePieces, ModelPlan, Models, MotionBackup,
@@ -23,6 +24,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) name: String,
     /// Rest shape.
     pub(crate) mesh: VolumeMesh,
+    /// Diagonal of the box around it [m]: the size against which tolerances are relative.
+    pub(crate) size: f64,
     /// Mass of a corner of each cell [kg].
     pub(crate) corner_masses: Vec<f64>,
     /// Rest volumes of the cells [m³].
@@ -58,7 +61,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) backup: MotionBackup<T>,
     pub(crate) pieces: Vec<u32>,
     /// Triangles of the surface as it is now, for tools that touch it; none without such tools.
-    pub(crate) skin: Vec<[u32; 3]>,
+    pub(crate) skin: Skin,
     pub(crate) contacts: Contacts,
     /// How it answers, where it does not move in time.
     pub(crate) answer: Option<Box<StaticAnswer>>,
@@ -160,11 +163,12 @@ impl<T: Scalar> SimulatedBody<T> {
             driven: Vec::with_capacity(mesh.nodes().len()),
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
-            skin: Vec::new(),
+            skin: Skin::default(),
             contacts: Contacts::default(),
             boundary,
             plan,
             name,
+            size: mesh.size(),
             mesh,
             corner_masses,
             cell_volumes,
@@ -276,16 +280,20 @@ impl<T: Scalar> SimulatedBody<T> {
         }
         self.state.tractions.reserve(triangles.saturating_sub(self.state.tractions.len()));
         self.backup.reserve_tractions(triangles);
-        self.skin.reserve(faces.saturating_sub(self.skin.len()));
+        if touch {
+            self.skin.reserve(&self.boundary, self.mesh.cell_count());
+        }
         self.update_skin();
     }
 
-    /// Brings the triangles that tools touch up to date with the cells that are left.
+    /// Lists the triangles that tools touch anew.
     pub(crate) fn update_skin(&mut self) {
-        if self.skin.capacity() > 0 {
-            self.skin.clear();
-            self.skin.extend(self.boundary.surface(&self.state.removed).map(|triangle| triangle.nodes));
-        }
+        self.skin.renew(&self.boundary, &self.state.removed);
+    }
+
+    /// Brings them up to date with cells that were just removed.
+    pub(crate) fn cut_skin(&mut self, cells: &[u32]) {
+        self.skin.cut(&self.boundary, &self.state.removed, cells);
     }
 
     /// Asks for the memory of the state before the last step, for schemes over two steps, and for that of its backup.

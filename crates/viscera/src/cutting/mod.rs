@@ -56,6 +56,6 @@ impl<T: Scalar> SimulatedBody<T> {
         self.frequency.remove(cells);
         state.positions_changed();
         self.cut_volumes();
-        self.update_skin();
+        self.cut_skin(cells);
     }
 }

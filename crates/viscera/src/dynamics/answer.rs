@@ -89,7 +89,8 @@ impl<T: Scalar> Answering<'_, T> {
     fn meet_tools(&mut self) {
         let drive = self.drive;
         self.body.contacts.forget();
-        if !self.body.contacts.gather(drive.rods, &self.body.skin, &self.body.state.positions, f64::INFINITY) {
+        if !self.body.contacts.gather(drive.rods, self.body.skin.triangles(), &self.body.state.positions, f64::INFINITY)
+        {
             return;
         }
         for _ in 0..ROUNDS {
@@ -98,7 +99,7 @@ impl<T: Scalar> Answering<'_, T> {
             let start = |node: u32| start[node as usize].cast::<f64>();
             let place = |node: u32, of: &[Vec3<f64>]| rest[node as usize].cast::<f64>() + of[node as usize];
             let places = |node: u32| (start(node), place(node, &own.displacements));
-            if !body.contacts.find(drive.rods, &body.skin, drive.frames, places) {
+            if !body.contacts.find(drive.rods, body.skin.triangles(), drive.frames, places) {
                 break;
             }
             let way = |node: u32| place(node, &own.unpushed) - start(node);

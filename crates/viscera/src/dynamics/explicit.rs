@@ -124,7 +124,7 @@ fn meet_tools<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_,
         ((end - velocity * step).cast(), end.cast())
     };
     body.contacts.clear();
-    if body.contacts.find(drive.rods, &body.skin, drive.frames, places) {
+    if body.contacts.find(drive.rods, body.skin.triangles(), drive.frames, places) {
         let (contacts, mut nodes) = touched(body);
         contacts.solve_drift(&mut nodes, drive.rods, dt);
     }

@@ -228,7 +228,8 @@ impl<T: Scalar> World<T> {
         for body in moving(&mut self.bodies) {
             let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * (way + radius);
             body.contacts.forget();
-            touches |= body.contacts.gather(&self.motion.rods, &body.skin, &body.state.positions, reach * expected);
+            touches |=
+                body.contacts.gather(&self.motion.rods, body.skin.triangles(), &body.state.positions, reach * expected);
         }
         if touches { (2.0 * ratio).ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
@@ -315,14 +316,14 @@ impl<T: Scalar> SimulatedBody<T> {
     fn is_within_reach(&self) -> bool {
         let reach = self.contacts.reach();
         let (from, to) = (self.backup.positions(), &self.state.positions);
-        self.skin.is_empty()
+        self.skin.triangles().is_empty()
             || reach == f64::INFINITY
             || from.iter().zip(to).all(|(&from, &to)| (to - from).squared_norm().to_f64() <= reach * reach)
     }
 
     /// Whether every number is finite, and no node was thrown in the step.
     pub(super) fn is_within_bounds(&self) -> bool {
-        let farthest = T::from_f64(THROWN * self.mesh.size());
+        let farthest = T::from_f64(THROWN * self.size);
         let (from, to) = (self.backup.positions(), &self.state.positions);
         self.state.is_finite()
             && from.iter().zip(to).all(|(&from, &to)| (to - from).squared_norm() <= farthest * farthest)

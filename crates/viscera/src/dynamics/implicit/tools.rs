@@ -37,7 +37,7 @@ impl<T: Scalar> Step<'_, T> {
             let start = memory.start[node as usize].cast::<f64>();
             (start, start + increment(node))
         };
-        let found = body.contacts.find(self.drive.rods, &body.skin, self.drive.frames, place);
+        let found = body.contacts.find(self.drive.rods, body.skin.triangles(), self.drive.frames, place);
         if found {
             body.contacts.find_before(&body.state.tractions, self.drive.rods, increment);
         }

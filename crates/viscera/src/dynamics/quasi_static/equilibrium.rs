@@ -122,7 +122,7 @@ impl<'a, T: Scalar> Equilibrium<'a, T> {
     fn rounding(&self) -> f64 {
         let diagonal = |node: usize| self.system.matrix.block(node, node).squared_norm();
         let stiffness = (0..self.start.len()).map(diagonal).sum::<f64>().sqrt();
-        4.0 * T::EPSILON.to_f64() * self.body.mesh.size() * stiffness
+        4.0 * T::EPSILON.to_f64() * self.body.size * stiffness
     }
 
     /// The stiffness of the tissue, and of loads that follow the surface.
