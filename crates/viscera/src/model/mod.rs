@@ -44,6 +44,7 @@ pub use volume_penalty::VolumePenalty;
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
+use crate::solver::{Filtered, dot, set_weighted};
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
 ///
@@ -74,6 +75,22 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
+
+    /// Writes S (M + K(x)) dx to `out`, with masses M scaled as stiffnesses [N/m], and gives dx·S (M + K(x)) dx: all that an iteration of an
+    /// implicit step asks for. A model that goes through the nodes at the end of a product does all of it on the way.
+    fn product_with_masses(
+        &self,
+        x: &[Vec3<T>],
+        dx: &[Vec3<T>],
+        inertia: &Inertia<'_, T>,
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        set_weighted(&scratch.executor, out, inertia.masses, dx);
+        self.add_product(x, dx, scratch, out);
+        inertia.filtered.apply(0, out);
+        dot(&scratch.executor, dx, out)
+    }
 
     /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>);
@@ -120,6 +137,15 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// A copy, for snapshots: a cut changes the model.
     fn clone_box(&self) -> Box<dyn ForceModel<T>>;
+}
+
+/// Masses on the diagonal of a system, and where the system decides.
+#[derive(Clone, Copy, Debug)]
+pub struct Inertia<'a, T> {
+    /// M, one for each node, over the factor of the stiffness [N/m].
+    pub masses: &'a [T],
+    /// S.
+    pub filtered: Filtered<'a, T>,
 }
 
 /// Forces between two places that account for the energy between them.

@@ -8,7 +8,7 @@ use fearless_simd::Simd;
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::patch::{Diagonal, Element, Measure, TetFans};
-use super::{BlockSink, ModelError, Scratch};
+use super::{BlockSink, Inertia, ModelError, Scratch};
 use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
 
@@ -247,6 +247,18 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.order.add([x, dx], &Product(self), scratch.sums(self.sum_rows()).0, out);
+    }
+
+    pub(crate) fn product_with_masses(
+        &self,
+        x: &[Vec3<T>],
+        dx: &[Vec3<T>],
+        inertia: &Inertia<'_, T>,
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        let sums = scratch.sums(self.sum_rows()).0;
+        self.order.product_with_masses([x, dx], &Product(self), sums, (dx, inertia), out)
     }
 
     pub(crate) fn add_mean_forces(

@@ -1,7 +1,7 @@
 use fearless_simd::dispatch;
 
-use super::vectors::dot_of;
-use super::{Filter, LinearOperator, Preconditioner, Size};
+use super::vectors::{combine_into, dot_of};
+use super::{Filter, LinearOperator, Preconditioner, Size, Stride};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
 use crate::solver::BlockSink;
@@ -104,6 +104,27 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
         Size { corrected: square, squared_norm: square }
     }
 
+    fn stride(
+        &mut self,
+        _matrix: &mut dyn LinearOperator<T>,
+        _filters: &[Filter<T>],
+        stride: Stride<'_, T>,
+        executor: &Executor,
+    ) -> Size {
+        let Stride { length, direction, x, residual, product } = stride;
+        let (this, blocks) = (&*self, node_blocks(residual.len()));
+        let data = ((NodeBlocks(x), NodeBlocks(residual)), (NodeBlocks(product), ReadBlocks(direction)));
+        let work = |block, ((NodeBlocks(x), NodeBlocks(r)), (NodeBlocks(q), ReadBlocks(p))): Striding<'_, T>| {
+            dispatch!(dispatch_level(), _simd => {
+                combine_into(x, T::ONE, length, p);
+                combine_into(r, T::ONE, -length, q);
+                this.apply_to_block(block, r, q)
+            })
+        };
+        let square = executor.fold(blocks, data, &work, &|a, b| a + b).unwrap_or(0.0);
+        Size { corrected: square, squared_norm: square }
+    }
+
     fn squared_norm(&self, residual: &[Vec3<T>], executor: &Executor) -> f64 {
         let work = |block: usize, ReadBlocks(r): ReadBlocks<'_, Vec3<T>>| {
             let square = |(i, &r): (usize, &Vec3<T>)| r.dot(self.at(block * NODE_BLOCK + i, r)).to_f64();
@@ -112,6 +133,10 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
         executor.fold(node_blocks(residual.len()), ReadBlocks(residual), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 }
+
+/// x, r, q and p of a [`Stride`].
+type Striding<'a, T> =
+    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>));
 
 /// S (`block` + `mass` I)⁻¹ S, or S / `mass` where there is no positive definite inverse.
 fn inverse<T: Scalar>(block: &Mat3<T>, mass: T, filter: &Filter<T>) -> Sym3<T> {

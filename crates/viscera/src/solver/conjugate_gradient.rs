@@ -6,8 +6,8 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::vectors::{dot, scale_and_add, step_along};
-use super::{Filter, LinearOperator, Preconditioner, Size};
+use super::vectors::filter_and_add;
+use super::{Filter, Filtered, LinearOperator, Preconditioner, Stride};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 
@@ -126,7 +126,9 @@ impl<T: Scalar> ConjugateGradient<T> {
         let nodes = problem.filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free);
         self.filtered.extend(nodes.map(|(node, _)| node as u32));
         let scale = self.start(matrix, preconditioner, problem, x);
-        let mut size = self.precondition(matrix, preconditioner, problem, None);
+        let mut size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product, executor);
+        Filtered { nodes: &self.filtered, filters: problem.filters }.apply(0, &mut self.product);
+        self.direction.copy_from_slice(&self.product);
         let goal = stop.relative() * scale;
         self.note(size.squared_norm, scale);
         let mut ending = Ending::Exhausted;
@@ -137,10 +139,9 @@ impl<T: Scalar> ConjugateGradient<T> {
                 ending = Ending::Converged;
                 break;
             }
-            matrix.apply(&self.direction, &mut self.product);
-            filter(&self.filtered, problem.filters, &mut self.product);
+            let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
+            let curvature = matrix.apply_along(&self.direction, &filtered, executor, &mut self.product);
             iterations += 1;
-            let curvature = dot(executor, &self.direction, &self.product);
             if curvature.is_nan() || curvature <= 0.0 {
                 if iterations == 1 {
                     self.step_against_masses(problem, size.corrected, x);
@@ -148,9 +149,13 @@ impl<T: Scalar> ConjugateGradient<T> {
                 ending = Ending::NegativeCurvature;
                 break;
             }
+            let (residual, product) = (&mut self.residual[..], &mut self.product[..]);
             let length = T::from_f64(size.corrected / curvature);
-            step_along(executor, (x, &mut self.residual), length, (&self.direction, &self.product));
-            size = self.precondition(matrix, preconditioner, problem, Some(size));
+            let stride = Stride { length, direction: &self.direction, x, residual, product };
+            let next = preconditioner.stride(matrix, problem.filters, stride, executor);
+            let weight = T::from_f64(next.corrected / size.corrected);
+            filter_and_add(executor, &mut self.direction, weight, &mut self.product, &filtered);
+            size = next;
             self.note(size.squared_norm, scale);
         }
         if ending == Ending::Exhausted && size.squared_norm.sqrt() <= goal {
@@ -176,8 +181,9 @@ impl<T: Scalar> ConjugateGradient<T> {
         });
         matrix.apply(x, &mut self.product);
         self.residual.copy_from_slice(problem.rhs);
-        filter(&self.filtered, problem.filters, &mut self.residual);
-        filter(&self.filtered, problem.filters, &mut self.product);
+        let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
+        filtered.apply(0, &mut self.residual);
+        filtered.apply(0, &mut self.product);
         let of_rhs = preconditioner.squared_norm(&self.residual, executor);
         let of_product = preconditioner.squared_norm(&self.product, executor);
         let data = (NodeBlocks(&mut self.residual), ReadBlocks(&self.product));
@@ -185,26 +191,6 @@ impl<T: Scalar> ConjugateGradient<T> {
             r.iter_mut().zip(product).for_each(|(r, &product)| *r -= product);
         });
         of_rhs.sqrt() + of_product.sqrt()
-    }
-
-    /// The next direction, S P⁻¹ r + (ρ/ρ_before) p; gives ρ = r·S P⁻¹ r and the residual's norm.
-    fn precondition(
-        &mut self,
-        matrix: &mut impl LinearOperator<T>,
-        preconditioner: &mut impl Preconditioner<T>,
-        problem: &Problem<'_, T>,
-        before: Option<Size>,
-    ) -> Size {
-        let size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product, problem.executor);
-        filter(&self.filtered, problem.filters, &mut self.product);
-        match before {
-            Some(before) => {
-                let weight = T::from_f64(size.corrected / before.corrected);
-                scale_and_add(problem.executor, &mut self.direction, weight, &self.product);
-            }
-            None => self.direction.copy_from_slice(&self.product),
-        }
-        size
     }
 
     /// x + p ρ/(p·M p): the step along the first direction if the masses were the whole matrix.
@@ -221,14 +207,5 @@ impl<T: Scalar> ConjugateGradient<T> {
 
     fn note(&mut self, square: f64, scale: f64) {
         self.history.push(if scale > 0.0 { square.max(0.0).sqrt() / scale } else { 0.0 });
-    }
-}
-
-/// S v at the nodes where that is not v. Once would leave the rounding of reactions, which are larger by far than what is left
-/// of the residual; twice leaves the rounding of that.
-fn filter<T: Scalar>(nodes: &[u32], filters: &[Filter<T>], v: &mut [Vec3<T>]) {
-    for &node in nodes {
-        let (filter, value) = (&filters[node as usize], &mut v[node as usize]);
-        *value = filter.apply(filter.apply(*value));
     }
 }

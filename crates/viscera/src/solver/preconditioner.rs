@@ -1,3 +1,4 @@
+use super::vectors::step_along;
 use super::{Filter, LinearOperator};
 use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
@@ -18,8 +19,37 @@ pub trait Preconditioner<T: Scalar> {
         executor: &Executor,
     ) -> Size;
 
+    /// Goes along a stride, and writes what [`Preconditioner::apply`] makes of the new residual over the product. A preconditioner that
+    /// goes through the nodes does both on the way.
+    fn stride(
+        &mut self,
+        matrix: &mut dyn LinearOperator<T>,
+        filters: &[Filter<T>],
+        stride: Stride<'_, T>,
+        executor: &Executor,
+    ) -> Size {
+        let Stride { length, direction, x, residual, product } = stride;
+        step_along(executor, (x, residual), length, (direction, product));
+        self.apply(matrix, filters, residual, product, executor)
+    }
+
     /// The square of a residual's norm.
     fn squared_norm(&self, residual: &[Vec3<T>], executor: &Executor) -> f64;
+}
+
+/// x ← x + s p and r ← r − s q: a step of the conjugate gradient.
+#[derive(Debug)]
+pub struct Stride<'a, T> {
+    /// s.
+    pub length: T,
+    /// p.
+    pub direction: &'a [Vec3<T>],
+    /// x.
+    pub x: &'a mut [Vec3<T>],
+    /// r.
+    pub residual: &'a mut [Vec3<T>],
+    /// q, and afterwards P⁻¹ r.
+    pub product: &'a mut [Vec3<T>],
 }
 
 /// How large a residual r is.

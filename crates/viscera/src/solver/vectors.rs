@@ -5,6 +5,7 @@
 
 use fearless_simd::dispatch;
 
+use super::Filtered;
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch_level};
 
@@ -40,12 +41,19 @@ pub(crate) fn step_along<T: Scalar>(
 type Pairs<'a, T> =
     ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (ReadBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>));
 
-/// y ← s y + x.
-pub(crate) fn scale_and_add<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], s: T, x: &[Vec3<T>]) {
-    let work = |_, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
+/// x ← S x, and y ← s y + x.
+pub(crate) fn filter_and_add<T: Scalar>(
+    executor: &Executor,
+    y: &mut [Vec3<T>],
+    s: T,
+    x: &mut [Vec3<T>],
+    filtered: &Filtered<'_, T>,
+) {
+    let work = |block: usize, (NodeBlocks(y), NodeBlocks(x)): (NodeBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| {
+        filtered.apply(block * NODE_BLOCK, x);
         dispatch!(dispatch_level(), _simd => combine_into(y, s, T::ONE, x));
     };
-    executor.each(node_blocks(x.len()), (NodeBlocks(y), ReadBlocks(x)), &work);
+    executor.each(node_blocks(x.len()), (NodeBlocks(y), NodeBlocks(x)), &work);
 }
 
 /// y ← m x, with a number m for each node.
@@ -68,7 +76,7 @@ pub(crate) fn add_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m:
 
 /// a·b over a block of nodes.
 #[inline(always)]
-pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
+pub(crate) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
     let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<NODES>(), b.as_chunks::<NODES>());
     let mut sums = [T::ZERO; NUMBERS];
     for (a, b) in a.iter().zip(b) {
@@ -83,7 +91,7 @@ pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
 
 /// y ← s y + t x.
 #[inline(always)]
-fn combine_into<T: Scalar>(y: &mut [Vec3<T>], s: T, t: T, x: &[Vec3<T>]) {
+pub(super) fn combine_into<T: Scalar>(y: &mut [Vec3<T>], s: T, t: T, x: &[Vec3<T>]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = x.mul_add(t, *y * s);
     }

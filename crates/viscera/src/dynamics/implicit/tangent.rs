@@ -1,7 +1,8 @@
 use crate::contact::Contacts;
+use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
-use crate::model::{ForceModel, Scratch};
-use crate::solver::{BlockMatrix, LinearOperator, add_weighted, set_weighted};
+use crate::model::{ForceModel, Inertia, Scratch};
+use crate::solver::{BlockMatrix, Filtered, LinearOperator, add_weighted, dot, set_weighted};
 use crate::stage::{Stage, Stages};
 
 /// The matrix of an implicit step over the factor of the stiffness: K, masses on the diagonal, and the springs of contacts.
@@ -33,5 +34,27 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         }
         let (contacts, scale) = self.contacts;
         contacts.add_product(scale, x, out);
+    }
+
+    fn apply_along(
+        &mut self,
+        x: &[Vec3<T>],
+        filtered: &Filtered<'_, T>,
+        executor: &Executor,
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        match self.models {
+            [model] if self.assembled.is_none() && self.contacts.0.is_empty() => {
+                let inertia = Inertia { masses: self.masses, filtered: *filtered };
+                self.stages.run(Stage::Products(model.name()), || {
+                    model.product_with_masses(self.positions, x, &inertia, self.scratch, out)
+                })
+            }
+            _ => {
+                self.apply(x, out);
+                filtered.apply(0, out);
+                dot(executor, x, out)
+            }
+        }
     }
 }

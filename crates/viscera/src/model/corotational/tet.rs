@@ -17,7 +17,7 @@ use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
 use crate::model::patch::{Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
-use crate::model::{ForceModel, ModelError, Scratch};
+use crate::model::{ForceModel, Inertia, ModelError, Scratch};
 
 /// Columns before those of the law: Dm⁻¹ by columns, V0.
 const SHAPE: usize = 10;
@@ -295,6 +295,24 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
             self.order.add([dx], &FrozenProduct { tets: self, linearization }, sums, out);
         } else {
             self.order.add([x, dx], &ExactProduct(self), sums, out);
+        }
+    }
+
+    fn product_with_masses(
+        &self,
+        x: &[Vec3<T>],
+        dx: &[Vec3<T>],
+        inertia: &Inertia<'_, T>,
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        let is_linearized = scratch.is_linearized;
+        let (sums, linearization) = scratch.sums(self.sum_rows());
+        if is_linearized {
+            let element = FrozenProduct { tets: self, linearization };
+            self.order.product_with_masses([dx], &element, sums, (dx, inertia), out)
+        } else {
+            self.order.product_with_masses([x, dx], &ExactProduct(self), sums, (dx, inertia), out)
         }
     }
 

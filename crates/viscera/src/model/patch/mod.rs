@@ -11,9 +11,13 @@ mod visitor;
 
 pub(crate) use tet_fans::{Diagonal, Element, Measure, Record, TetFans};
 
+use fearless_simd::dispatch;
+
 use self::partition::partition;
 use crate::executor::{Divide, Executor, NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Sym3, Vec3};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
+use crate::model::Inertia;
+use crate::solver::dot_of;
 
 /// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
 /// modulo it is a number of a node, and needs no check.
@@ -131,6 +135,32 @@ impl Patches {
             let [x, y, z, _] = rows[copy];
             *sum += Vec3::new(x, y, z);
         });
+    }
+
+    /// Writes to each node of `out` its mass times `dx` and the rows of its copies, filtered; gives `dx`·`out`.
+    pub(crate) fn add_up_with_masses<T: Scalar>(
+        &self,
+        executor: &Executor,
+        rows: &[[T; 4]],
+        (dx, inertia): (&[Vec3<T>], &Inertia<'_, T>),
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
+        let work = |block: usize, NodeBlocks(out): NodeBlocks<'_, Vec3<T>>| {
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + out.len();
+            let (dx, masses) = (&dx[nodes.clone()], &inertia.masses[nodes.clone()]);
+            let ends = self.copy_starts[nodes.start..=nodes.end].windows(2);
+            for (((sum, ends), &dx), &mass) in out.iter_mut().zip(ends).zip(dx).zip(masses) {
+                *sum = dx * mass;
+                for &copy in &self.copies[ends[0] as usize..ends[1] as usize] {
+                    let [x, y, z, _] = rows[copy as usize];
+                    *sum += Vec3::new(x, y, z);
+                }
+            }
+            inertia.filtered.apply(nodes.start, out);
+            dispatch!(dispatch_level(), _simd => dot_of(dx, out))
+        };
+        executor.fold(node_blocks(out.len()), NodeBlocks(out), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 
     /// The same where `out` has rows as well.

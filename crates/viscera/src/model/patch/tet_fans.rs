@@ -6,7 +6,7 @@ use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
-use crate::model::Sums;
+use crate::model::{Inertia, Sums};
 
 /// Tetrahedra in the order in which loops visit them: patch by patch, fan by fan, as many fans at once as there are lanes.
 ///
@@ -156,6 +156,32 @@ impl TetFans {
         out: &mut [Vec3<T>],
     ) {
         let Sums { executor, rows } = sums;
+        self.sum(fields, element, executor, rows);
+        self.patches.add_up(executor, rows, out);
+    }
+
+    /// The same for a product along `dx`, with masses, filtered, into `out`; gives `dx`·`out`.
+    pub(crate) fn product_with_masses<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+        &self,
+        fields: [&[Vec3<T>]; FIELDS],
+        element: &E,
+        sums: Sums<'_, T>,
+        (dx, inertia): (&[Vec3<T>], &Inertia<'_, T>),
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        let Sums { executor, rows } = sums;
+        self.sum(fields, element, executor, rows);
+        self.patches.add_up_with_masses(executor, rows, (dx, inertia), out)
+    }
+
+    /// Sums the forces of each patch.
+    fn sum<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+        &self,
+        fields: [&[Vec3<T>]; FIELDS],
+        element: &E,
+        executor: &Executor,
+        rows: &mut [[T; 4]],
+    ) {
         let rows = &mut rows[..self.patches.copies()];
         self.patches.each(executor, rows, 1, &|patch, rows| {
             let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
@@ -167,7 +193,6 @@ impl TetFans {
             }
             rows.copy_from_slice(&sums[0][..rows.len()]);
         });
-        self.patches.add_up(executor, rows, out);
     }
 
     #[inline(always)]

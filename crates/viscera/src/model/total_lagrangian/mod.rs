@@ -14,7 +14,8 @@ use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{
-    BlockSink, ForceModel, GenericRecipe, MeanForces, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe,
+    BlockSink, ForceModel, GenericRecipe, Inertia, MeanForces, ModelError, ModelInfo, ModelKind, Precision, Scratch,
+    recipe,
 };
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -142,6 +143,17 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.tets.add_product(x, dx, scratch, out);
+    }
+
+    fn product_with_masses(
+        &self,
+        x: &[Vec3<T>],
+        dx: &[Vec3<T>],
+        inertia: &Inertia<'_, T>,
+        scratch: &mut Scratch<T>,
+        out: &mut [Vec3<T>],
+    ) -> f64 {
+        self.tets.product_with_masses(x, dx, inertia, scratch, out)
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
