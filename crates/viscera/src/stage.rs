@@ -17,7 +17,7 @@ pub enum Stage {
     KickAndDrift,
     /// Volumes that are kept exactly, and rigid parts.
     Constraints,
-    /// Impulses that hold together bodies that are grown to each other.
+    /// What holds together bodies that are grown to each other: impulses, or the ties' part in linear solves.
     Attachments,
     /// An implicit step of a body; of its own, the vectors of Newton's method.
     Newton,

@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use viscera::body::{Body, Load, LoosePieces, Muscle};
 use viscera::curve::Curve;
-use viscera::dynamics::implicit::{Implicit, Preconditioning};
+use viscera::dynamics::implicit::{Implicit, Newton, Preconditioning};
 use viscera::instrument::{Cautery, Grasper, Probe};
 use viscera::material::{LawFamily, LawVisitor, LinearElastic, StVenantKirchhoff, Tissue};
 use viscera::math::Vec3;
@@ -11,7 +11,7 @@ use viscera::mesh::{HexMesh, Region, TetMesh};
 use viscera::model::{
     Corotational, Hybrid, ModelKind, ModelRecipe, NodallyIntegrated, Precision, Precomputed, ShapeMemory, TensorMass,
 };
-use viscera::world::{Integrator, World, WorldConfig};
+use viscera::world::{Attachment, Integrator, World, WorldConfig};
 
 /// A beam under gravity and pressure that is grasped, pulled, burnt through, and loses the piece beyond the cut.
 fn operation<T: Precision>(recipe: Box<dyn ModelRecipe>, hexahedra: bool, integrator: Integrator) -> World<T> {
@@ -140,6 +140,36 @@ fn no_step_with_multigrid_allocates() {
     ];
     let settings = Implicit { preconditioner: Preconditioning::Multigrid, ..Implicit::default() };
     assert_no_step_allocates::<f64>(recipes, Integrator::Implicit(settings));
+}
+
+/// Bodies that are grown together, while jaws hold tied nodes: what ties need was asked for when they were made.
+#[test]
+fn no_step_of_attached_bodies_allocates() {
+    let tissue = || Tissue::uniform(StVenantKirchhoff::from_young_poisson(5e3, 0.4).unwrap());
+    let full = Implicit { newton: Newton::Full { relative: 1e-6, at_most: 30 }, ..Implicit::default() };
+    for integrator in [Integrator::default(), Integrator::Implicit(Implicit::default()), Integrator::Implicit(full)] {
+        let config = WorldConfig { gravity: [0.0, -0.5, 0.0], integrator, ..WorldConfig::default() };
+        let mut world = World::<f32>::new(config).unwrap();
+        let mut add = |cells, low: f64, fixed: bool| {
+            let mut mesh = TetMesh::box_grid(cells, [0.04, 0.04, 0.08]);
+            mesh.nodes.iter_mut().for_each(|node| node.z += low);
+            let body = Body::new(mesh, 1000.0).model(TensorMass::new(tissue())).damping(2.0);
+            world.add(if fixed { body.fix(Region::Named("z-min".into())) } else { body }).unwrap()
+        };
+        let (to, body) = (add([2, 2, 4], 0.0, true), add([3, 3, 5], 0.08, false));
+        world.attach(Attachment { body, region: Region::Named("z-min".into()), to }).unwrap();
+        let seam = Vec3::new(0.02, 0.04, 0.08);
+        let path = Curve::piecewise_linear(vec![(0.05, seam), (0.2, seam + Vec3::splat(0.01))]).unwrap();
+        let grasper = Grasper { path, radius: 0.015, close: 0.05, open: Some(0.15), ..Grasper::default() };
+        let tool = world.add_instrument(grasper).unwrap();
+        let mut held = 0;
+        for step in 0..40 {
+            let allocated = measure(|| assert!(world.step().is_ok()));
+            assert_eq!(allocated.count_total, 0, "{integrator:?}, step {step}: {} bytes", allocated.bytes_total);
+            held += world.tool(tool).held_nodes;
+        }
+        assert!(held > 0, "the jaws must have held some of the seam");
+    }
 }
 
 /// Volumes that are kept, rigid parts and muscles, while cells of them are cut away.

@@ -59,7 +59,7 @@ fn why(profile: &Profile, cost: Cost) -> Vec<String> {
                 vec!["It goes with the nodes that tools touch and hold, times all nodes: smaller jaws, or longer edges, cost less.".into()]
             }
             Stage::Attachments => {
-                vec!["Ties are gone through until they agree, twice in every sub-step: fewer tied nodes, and softer or coarser bodies, cost less.".into()]
+                vec!["Ties are solved twice in every explicit sub-step, and once in every iteration of an implicit one: fewer tied nodes, and softer or coarser bodies, cost less.".into()]
             }
             Stage::Cutting => {
                 vec!["Instruments look at every cell of every body in each step that they are at work: switch them off in time.".into()]

@@ -45,7 +45,7 @@ pub struct BodyFile {
     /// What is moved along a given way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub prescribe: Vec<PrescribeFile>,
-    /// Where it is grown to other bodies; the explicit integrator only.
+    /// Where it is grown to other bodies; with any integrator, but not with multigrid.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub attach: Vec<AttachFile>,
     /// Parts whose volume is kept to rounding, as by an incompressible filling; the explicit integrator only.

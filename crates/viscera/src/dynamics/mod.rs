@@ -6,5 +6,6 @@ pub mod explicit;
 mod hold;
 pub mod implicit;
 pub mod quasi_static;
+pub(crate) mod tied;
 
 pub use drive::Drive;

@@ -62,11 +62,23 @@ impl<T: Scalar> BlockJacobi<T> {
         );
     }
 
+    /// Takes the inverses of another one, times `factor`, as those of the nodes from `start` on.
+    pub(crate) fn take(&mut self, start: usize, other: &Self, factor: T) {
+        for (own, other) in self.inverses.iter_mut().zip(&other.inverses) {
+            own[start..start + other.len()].iter_mut().zip(other).for_each(|(own, &other)| *own = other * factor);
+        }
+    }
+
+    /// P⁻¹ of a node.
+    pub(crate) fn inverse(&self, node: usize) -> Mat3<T> {
+        let [xx, yy, zz, xy, xz, yz] = self.inverses.each_ref().map(|numbers| numbers[node]);
+        Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz })
+    }
+
     /// P⁻¹ r of a node.
     #[inline]
     pub(crate) fn at(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
-        let [xx, yy, zz, xy, xz, yz] = self.inverses.each_ref().map(|numbers| numbers[node]);
-        Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz }) * residual
+        self.inverse(node) * residual
     }
 
     /// P⁻¹ r of a block of nodes into `corrected`, and r·P⁻¹ r.

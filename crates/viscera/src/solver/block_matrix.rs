@@ -26,6 +26,18 @@ impl<T: Scalar> BlockMatrix<T> {
         Self { starts, columns, blocks }
     }
 
+    /// Matrices side by side on the diagonal of one.
+    pub(crate) fn side_by_side(parts: impl Iterator<Item = Self>) -> Self {
+        let mut all = Self { starts: vec![0], columns: Vec::new(), blocks: Vec::new() };
+        for part in parts {
+            let (nodes, blocks) = (all.starts.len() as u32 - 1, all.columns.len() as u32);
+            all.columns.extend(part.columns.iter().map(|column| column + nodes));
+            all.starts.extend(part.starts[1..].iter().map(|start| start + blocks));
+            all.blocks.extend(part.blocks);
+        }
+        all
+    }
+
     /// Sets every block to zero; the pattern stays.
     pub fn clear(&mut self) {
         self.blocks.fill(Mat3::ZERO);

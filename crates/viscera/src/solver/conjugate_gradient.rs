@@ -111,6 +111,11 @@ impl<T: Scalar> ConjugateGradient<T> {
         &self.history
     }
 
+    /// Takes over the residuals of a solve in which this one had its part.
+    pub(crate) fn note_history_of(&mut self, other: &Self) {
+        self.history.clone_from(&other.history);
+    }
+
     /// Solves for `x`, which holds the guess. Iterations beyond those that memory was asked for are not made.
     pub fn solve(
         &mut self,

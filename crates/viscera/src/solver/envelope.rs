@@ -135,24 +135,29 @@ impl Envelope {
     }
 }
 
-/// Nodes that are not wholly held, ring after ring from a node at an end of each piece, and all of that backwards.
+/// Nodes that are not wholly held, in an order that keeps rows short.
 fn reverse_cuthill_mckee(system: &System) -> Vec<u32> {
     let is_free = |node: u32| system.filters[node as usize] != Filter::Held;
     let neighbours: Vec<Vec<u32>> = (0..system.nodes())
         .map(|node| system.matrix.row(node).map(|(other, _)| other).filter(|&other| is_free(other)).collect())
         .collect();
+    ring_order(&neighbours, is_free)
+}
+
+/// Those that count, ring after ring from one at an end of each piece, and all of that backwards. Only they are anybody's neighbours.
+pub(super) fn ring_order(neighbours: &[Vec<u32>], counts: impl Fn(u32) -> bool) -> Vec<u32> {
     let mut order: Vec<u32> = Vec::new();
-    let mut is_known = vec![false; system.nodes()];
-    for node in (0..system.nodes() as u32).filter(|&node| is_free(node)) {
+    let mut is_known = vec![false; neighbours.len()];
+    for node in (0..neighbours.len() as u32).filter(|&node| counts(node)) {
         if is_known[node as usize] {
             continue;
         }
         // From the end of the rings around one end, twice: they are long and narrow then.
         let mut start = node;
         for _ in 0..2 {
-            start = rings(start, &neighbours, &mut is_known.clone()).last().copied().unwrap_or(start);
+            start = rings(start, neighbours, &mut is_known.clone()).last().copied().unwrap_or(start);
         }
-        order.extend(rings(start, &neighbours, &mut is_known));
+        order.extend(rings(start, neighbours, &mut is_known));
     }
     order.reverse();
     order

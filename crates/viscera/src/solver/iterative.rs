@@ -1,4 +1,7 @@
-use super::{BlockJacobi, ConjugateGradient, Ending, LinearSolver, Problem, SolverError, Stop, System};
+use super::{
+    BlockJacobi, BlockMatrix, ConjugateGradient, Ending, LinearOperator, LinearSolver, PlacedTies, Problem,
+    SolverError, Stop, System, TieEquations,
+};
 use crate::executor::Executor;
 use crate::math::Vec3;
 
@@ -11,6 +14,8 @@ pub struct Iterative {
     /// Where to stop: residual over right-hand side, in the norm of the preconditioner [> 0, < 1].
     tolerance: f64,
     preconditioner: Option<BlockJacobi<f64>>,
+    /// What the solution has to fulfil besides, and which of the nodes are there.
+    ties: Option<(PlacedTies, TieEquations)>,
 }
 
 /// The most iterations for each unknown: rounding keeps the directions from being conjugate, and one is not enough.
@@ -19,7 +24,12 @@ const ITERATIONS: u32 = 10;
 impl Iterative {
     /// A solver that stops at this relative residual [> 0, < 1].
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, preconditioner: None }
+        Self { tolerance, preconditioner: None, ties: None }
+    }
+
+    /// The default for systems whose solutions fulfil ties, by the projected conjugate gradient; `by_mass` knows which of the nodes are there.
+    pub(crate) fn tied(ties: PlacedTies, by_mass: TieEquations) -> Self {
+        Self { ties: Some((ties, by_mass)), ..Self::default() }
     }
 }
 
@@ -45,6 +55,9 @@ impl LinearSolver for Iterative {
             *block = system.matrix.block(node, node);
         }
         preconditioner.invert(&vec![0.0; system.nodes()], &system.filters, &Executor::serial());
+        if let Some((ties, by_mass)) = &mut self.ties {
+            ties.update(by_mass, |node| preconditioner.inverse(node));
+        }
         Ok(())
     }
 
@@ -53,6 +66,8 @@ impl LinearSolver for Iterative {
         let mut conjugate_gradient = ConjugateGradient::new(right.len(), iterations(system));
         let zeros = vec![Vec3::ZERO; right.len()];
         let mut solution = zeros.clone();
+        let mut matrix = Tied { matrix: system.matrix.clone(), ties: self.ties.as_ref().map(|(ties, _)| ties.clone()) };
+        matrix.take_out(right);
         let problem = Problem {
             rhs: right,
             filters: &system.filters,
@@ -61,8 +76,10 @@ impl LinearSolver for Iterative {
             executor: &Executor::serial(),
         };
         let stop = Stop::Tolerance { relative: self.tolerance, at_most: iterations(system) };
-        let report =
-            conjugate_gradient.solve(&mut system.matrix.clone(), &mut preconditioner, &problem, stop, &mut solution);
+        let report = conjugate_gradient.solve(&mut matrix, &mut preconditioner, &problem, stop, &mut solution);
+        if let Some(ties) = &mut matrix.ties {
+            ties.fulfil(&mut solution, |_| Vec3::ZERO);
+        }
         match report.ending {
             Ending::Converged => right.copy_from_slice(&solution),
             Ending::NegativeCurvature => return Err(SolverError::NotPositiveDefinite),
@@ -71,5 +88,26 @@ impl LinearSolver for Iterative {
             }
         }
         Ok(())
+    }
+}
+
+/// A matrix, and what ties take of its products.
+struct Tied {
+    matrix: BlockMatrix<f64>,
+    ties: Option<PlacedTies>,
+}
+
+impl Tied {
+    fn take_out(&mut self, forces: &mut [Vec3<f64>]) {
+        if let Some(ties) = &mut self.ties {
+            ties.take_out(forces);
+        }
+    }
+}
+
+impl LinearOperator<f64> for Tied {
+    fn apply(&mut self, x: &[Vec3<f64>], out: &mut [Vec3<f64>]) {
+        self.matrix.times(x, out);
+        self.take_out(out);
     }
 }

@@ -1,5 +1,6 @@
 //! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient with its preconditioners,
-//! and the seam to factorisations.
+//! the seam to factorisations, and
+//! equations that tie nodes together.
 
 mod block_jacobi;
 mod block_matrix;
@@ -12,8 +13,10 @@ mod filtered;
 mod iterative;
 mod linear_solver;
 mod multigrid;
+mod placed_ties;
 mod preconditioner;
 mod system;
+mod ties;
 mod vectors;
 
 pub use block_jacobi::BlockJacobi;
@@ -27,8 +30,10 @@ pub use filtered::Filtered;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
 pub use multigrid::{Cycle, Multigrid};
+pub(crate) use placed_ties::PlacedTies;
 pub use preconditioner::{Preconditioner, Size, Stride};
 pub use system::System;
+pub(crate) use ties::{Tie, TieEquations};
 pub(crate) use vectors::{add_weighted, dot, dot_of, set_weighted};
 
 use crate::executor::Executor;

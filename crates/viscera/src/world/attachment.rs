@@ -2,20 +2,17 @@
 //!
 //! A node stays where it was in the frame of a tetrahedron behind the nearest triangle of the other surface, x = Σ w_i x_i with the
 //! barycentric weights that it has there: exact at the beginning even where the two surfaces gape, and as the weights sum up to 1
-//! and reproduce the node's own place, impulses along them keep momentum and angular momentum of the two. They are found as those of
-//! contact: on lumped masses, before the drift for places, and after the second kick for velocities.
+//! and reproduce the node's own place, forces along them keep momentum and angular momentum of the two. Every integrator holds them exactly:
+//! explicit sub-steps by impulses, implicit steps and equilibria by solving the equations of bodies that are tied together as one.
 
-use super::{BodyId, World, WorldError};
+use super::{BodyId, Integrator, World, WorldError};
 use crate::body::{BodyError, SimulatedBody};
+use crate::dynamics::implicit::Preconditioning;
+use crate::dynamics::tied::{Aim, PlacedNode, TiedBodies};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{Point, Region};
-use crate::solver::Filter;
 use crate::stage::{Stage, Stages};
 
-/// The most sweeps over all ties.
-const SWEEPS: u32 = 60;
-/// Sweeps end when no tie changes by more than this share of the largest change of the first sweep.
-const SETTLED: f64 = 1e-10;
 /// A node farther from the other surface than so many edges of its triangle is not attached to it.
 const FARTHEST: f64 = 1.0;
 
@@ -36,46 +33,33 @@ pub struct Attachment {
 
 /// An attachment with its places found.
 #[derive(Clone, Debug)]
-pub(super) struct Ties {
+pub(super) struct Grown {
     body: usize,
     to: usize,
-    ties: Vec<Tie>,
+    nodes: Vec<PlacedNode>,
     /// Impulse on the first body in this step [N s].
-    impulse: Point,
+    pub(super) impulse: Point,
     /// Mean force on the first body over the last step [N].
     pub(super) force: Point,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Tie {
-    node: u32,
-    anchors: [u32; 4],
-    weights: [f64; 4],
-}
-
-/// What impulses are to bring about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Aim {
-    /// Tied places meet at the end of the drift.
-    Place,
-    /// They move alike.
-    Velocity,
-}
-
 impl<T: Scalar> World<T> {
-    /// Grows a part of a body to another body, where both are now. Explicit worlds only: implicit steps solve the equations of one body
-    /// after the other.
+    /// Grows a part of a body to another body, where both are now.
+    ///
+    /// Any integrator moves them: implicit steps and equilibria solve the equations of all bodies that attachments connect as one system, and
+    /// every place that they give has the ties in it. A tie that says what others say already counts once.
     ///
     /// # Errors
-    /// [`WorldError::AttachmentNeedsExplicit`]; [`WorldError::AttachedToItself`]; [`WorldError::AttachedToPrecomputed`];
-    /// [`WorldError::Body`] for a region without nodes;
+    /// [`WorldError::AttachmentNeedsBlockJacobi`] in implicit worlds with multigrid; [`WorldError::AttachedToItself`];
+    /// [`WorldError::AttachedToPrecomputed`]; [`WorldError::Body`] for a region without nodes;
     /// [`WorldError::TooFarToAttach`] for a node that is nowhere near the other surface. Panics for a body of another world.
     pub fn attach(&mut self, attachment: Attachment) -> Result<AttachmentId, WorldError> {
         let Attachment { body, region, to } = attachment;
         let (own, other) = (&self.bodies[body.0], &self.bodies[to.0]);
         let (name, to_name) = (own.name.clone(), other.name.clone());
-        if !matches!(self.config.integrator, super::Integrator::Explicit(_)) {
-            return Err(WorldError::AttachmentNeedsExplicit { body: name, to: to_name });
+        if matches!(self.config.integrator, Integrator::Implicit(own) if own.preconditioner == Preconditioning::Multigrid)
+        {
+            return Err(WorldError::AttachmentNeedsBlockJacobi { body: name, to: to_name });
         }
         if body == to {
             return Err(WorldError::AttachedToItself { body: name });
@@ -98,9 +82,10 @@ impl<T: Scalar> World<T> {
                 }
             }
         };
-        let ties = nodes.into_iter().map(tie).collect::<Result<_, _>>()?;
+        let nodes = nodes.into_iter().map(tie).collect::<Result<_, _>>()?;
         let (impulse, force) = (Point::ZERO, Point::ZERO);
-        self.attachments.push(Ties { body: body.0, to: to.0, ties, impulse, force });
+        self.attachments.push(Grown { body: body.0, to: to.0, nodes, impulse, force });
+        self.tie_together();
         Ok(AttachmentId(self.attachments.len() - 1))
     }
 
@@ -110,93 +95,57 @@ impl<T: Scalar> World<T> {
         self.attachments[id.0].force
     }
 
+    /// Finds which bodies attachments connect, and asks for the memory that solving them together takes.
+    fn tie_together(&mut self) {
+        let mut groups: Vec<usize> = (0..self.bodies.len()).collect();
+        for grown in &self.attachments {
+            let (from, to) = (groups[grown.body], groups[grown.to]);
+            groups.iter_mut().filter(|group| **group == from.max(to)).for_each(|group| *group = from.min(to));
+        }
+        self.tied.clear();
+        for group in 0..groups.len() {
+            let bodies: Vec<usize> = (0..groups.len()).filter(|&body| groups[body] == group).collect();
+            if bodies.len() < 2 {
+                continue;
+            }
+            let own = self.attachments.iter().enumerate().filter(|(_, grown)| groups[grown.body] == group);
+            let own = own.map(|(number, grown)| (number, [grown.body, grown.to], &grown.nodes[..]));
+            let mut tied = TiedBodies::new(bodies, own);
+            if let Integrator::Implicit(settings) = self.config.integrator {
+                tied = tied.with_implicit_steps(&self.bodies, &settings);
+            }
+            self.tied.push(tied);
+        }
+    }
+
     /// Clears what the ties did in a step before it is made.
     pub(super) fn begin_attachments(&mut self) {
-        self.attachments.iter_mut().for_each(|ties| ties.impulse = Point::ZERO);
+        self.attachments.iter_mut().for_each(|grown| grown.impulse = Point::ZERO);
     }
 
     /// Takes down what they did.
     pub(super) fn settle_attachments(&mut self) {
-        for ties in &mut self.attachments {
-            ties.force = ties.impulse / self.config.step;
+        for grown in &mut self.attachments {
+            grown.force = grown.impulse / self.config.step;
+        }
+    }
+
+    /// Looks which ties are left before the sub-steps of a step.
+    pub(super) fn begin_ties(&mut self, stages: Stages) {
+        for tied in &mut self.tied {
+            stages.run(Stage::Attachments, || tied.begin(&self.bodies));
         }
     }
 
     /// Impulses that hold together what is attached, in a sub-step of `dt` [s].
     pub(super) fn hold_together(&mut self, dt: f64, aim: Aim, stages: Stages) {
-        for ties in &mut self.attachments {
-            let Ok([own, other]) = self.bodies.get_disjoint_mut([ties.body, ties.to]) else { continue };
-            stages.run(Stage::Attachments, || ties.impulse += ties_impulse(&ties.ties, own, other, dt, aim));
-        }
-    }
-}
-
-fn ties_impulse<T: Scalar>(
-    ties: &[Tie],
-    own: &mut SimulatedBody<T>,
-    other: &mut SimulatedBody<T>,
-    dt: f64,
-    aim: Aim,
-) -> Point {
-    let (mut sum, mut first) = (Point::ZERO, 0.0f64);
-    // The second kick has been divided by this, and would have divided the impulse in it as well.
-    let damping = if aim == Aim::Velocity { 1.0 + 0.5 * dt * own.damping.to_f64() } else { 1.0 };
-    for sweep in 0..SWEEPS {
-        let mut largest = 0.0f64;
-        for tie in ties {
-            let node = tie.node as usize;
-            // Cut off on one side, the tie is cut.
-            let gone = |body: &SimulatedBody<T>, node: usize| body.state.masses[node] <= T::ZERO;
-            if gone(own, node) || tie.anchors.iter().any(|&anchor| gone(other, anchor as usize)) {
-                continue;
-            }
-            let anchors = tie.anchors.iter().zip(tie.weights);
-            let apart = |of_own: Vec3<T>, of_other: &[Vec3<T>]| {
-                let there = anchors.clone();
-                there.fold(of_own.cast::<f64>(), |sum, (&anchor, w)| sum - of_other[anchor as usize].cast::<f64>() * w)
-            };
-            let velocity = match aim {
-                Aim::Place => apart(own.state.positions[node], &other.state.positions) / dt,
-                Aim::Velocity => apart(own.state.velocities[node], &other.state.velocities),
-            };
-            let mobility = anchors.clone().fold(mobility(own, node), |sum, (&anchor, weight)| {
-                sum + weight * weight * mobility(other, anchor as usize)
+        let (bodies, attachments) = (&mut self.bodies, &mut self.attachments);
+        for tied in &mut self.tied {
+            stages.run(Stage::Attachments, || {
+                tied.hold_together(bodies, dt, aim, |number, impulse| attachments[number].impulse += impulse);
             });
-            if mobility <= 0.0 {
-                continue;
-            }
-            let impulse = -(velocity / mobility);
-            let moved = if aim == Aim::Place { dt } else { 0.0 };
-            push(own, node, impulse, moved);
-            for (&anchor, weight) in tie.anchors.iter().zip(tie.weights) {
-                push(other, anchor as usize, -(impulse * weight), moved);
-            }
-            sum += impulse * damping;
-            largest = largest.max(impulse.norm() * mobility);
-        }
-        if sweep == 0 {
-            first = largest;
-        }
-        if largest <= SETTLED * first {
-            break;
         }
     }
-    sum
-}
-
-/// The velocity that a unit of impulse gives a node [1/kg].
-fn mobility<T: Scalar>(body: &SimulatedBody<T>, node: usize) -> f64 {
-    match body.free_directions(node) {
-        Filter::Held => 0.0,
-        _ => 1.0 / body.state.masses[node].to_f64(),
-    }
-}
-
-fn push<T: Scalar>(body: &mut SimulatedBody<T>, node: usize, impulse: Point, moved: f64) {
-    let change = (impulse / body.state.masses[node].to_f64()).cast();
-    let change: Vec3<T> = body.free_directions(node).apply(change);
-    body.state.velocities[node] += change;
-    body.state.positions[node] = change.mul_add(T::from_f64(moved), body.state.positions[node]);
 }
 
 /// The tie of a node to the triangle that is nearest to `place`, how far that is, and the triangle's longest edge [m].
@@ -205,7 +154,7 @@ fn nearest_tie<T: Scalar>(
     triangles: &[([u32; 3], u32)],
     node: u32,
     place: Point,
-) -> (Option<Tie>, f64, f64) {
+) -> (Option<PlacedNode>, f64, f64) {
     let at = |node: u32| other.state.positions[node as usize].cast::<f64>();
     let mut nearest = (None, f64::INFINITY, 0.0);
     for &(corners, cell) in triangles {
@@ -227,7 +176,7 @@ fn nearest_tie<T: Scalar>(
         let own = frame.inverse() * (place - a);
         let weights = [1.0 - own.x - own.y - own.z, own.x, own.y, own.z];
         let anchors = [corners[0], corners[1], corners[2], apex];
-        own.is_finite().then_some(Tie { node, anchors, weights })
+        own.is_finite().then_some(PlacedNode { node, anchors, weights })
     });
     (tie, distance, edge)
 }

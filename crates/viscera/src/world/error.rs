@@ -106,12 +106,11 @@ pub enum WorldError {
         /// How many cells there are.
         cells: usize,
     },
-    /// Implicit steps solve the equations of one body after the other, so that none feels another one within a step.
+    /// The multigrid of a body knows nothing of the bodies to which it is tied.
     #[error(
-        "body `{body}` cannot be attached to `{to}` in implicit steps, which move one body after the other; take the explicit \
-         integrator, or make one mesh of the two"
+        "body `{body}` cannot be attached to `{to}` under multigrid, which knows one body each; take the preconditioner `block-jacobi`"
     )]
-    AttachmentNeedsExplicit {
+    AttachmentNeedsBlockJacobi {
         /// Name of the body that was to be attached.
         body: String,
         /// Name of the body to which.

@@ -23,10 +23,11 @@ pub use step::StepReport;
 
 use crate::body::{Body, SimulatedBody};
 use crate::dynamics::implicit::ImplicitMemory;
+use crate::dynamics::tied::TiedBodies;
 use crate::instrument::{Instrument, ToolState};
 use crate::math::Scalar;
 use crate::model::Precision;
-use attachment::Ties;
+use attachment::Grown;
 use tools::ToolMotion;
 
 /// Number of a body in its world.
@@ -48,7 +49,9 @@ pub struct World<T: Scalar> {
     /// The instruments as they are now.
     tools: Vec<ToolState>,
     motion: ToolMotion,
-    attachments: Vec<Ties>,
+    attachments: Vec<Grown>,
+    /// Bodies that attachments connect.
+    tied: Vec<TiedBodies<T>>,
     /// Steps taken; time is their number times their length, so that it carries no rounding from step to step.
     steps: u64,
     /// Memory for the cells that an instrument removes.
@@ -70,6 +73,7 @@ impl<T: Scalar> World<T> {
             tools: Vec::new(),
             motion: ToolMotion::default(),
             attachments: Vec::new(),
+            tied: Vec::new(),
             steps: 0,
             removable: Vec::new(),
         })

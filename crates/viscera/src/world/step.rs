@@ -1,10 +1,10 @@
 //! One step of a world.
 
-use super::attachment::Aim;
 use super::{Integrator, StepError, Substep, World};
 use crate::body::SimulatedBody;
 use crate::constraint::Unkept;
 use crate::dynamics::implicit::ImplicitReport;
+use crate::dynamics::tied::Aim;
 use crate::dynamics::{Drive, explicit};
 use crate::executor::Executor;
 use crate::instrument::Span;
@@ -242,6 +242,7 @@ impl<T: Scalar> World<T> {
         for body in moving(&mut self.bodies) {
             explicit::begin(body, span.from, gravity, stages);
         }
+        self.begin_ties(stages);
         for substep in 1..=substeps {
             let end = span.from + (span.to - span.from) * (f64::from(substep) / f64::from(substeps));
             let share = |substep: u32| f64::from(substep) / f64::from(substeps);

@@ -1,7 +1,8 @@
 use super::step::{MOST_PARTS, Motion, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
-use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Newton};
+use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Newton};
+use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, Stages};
@@ -52,6 +53,7 @@ impl<T: Scalar> World<T> {
     ) -> (ImplicitReport, Option<Unsolved>) {
         let gravity = Vec3::from(self.config.gravity).cast();
         let (mut report, mut unsolved) = (ImplicitReport::NOTHING, None);
+        self.begin_attachments();
         let share = |part: u32| f64::from(part) / f64::from(parts);
         for part in 0..parts {
             let at = |part: u32| span.from + (span.to - span.from) * share(part);
@@ -59,17 +61,24 @@ impl<T: Scalar> World<T> {
             let (from, end) = (at(part), if part + 1 == parts { span.to } else { at(part + 1) });
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let dt = self.config.step / f64::from(parts);
-            let all = self.bodies.iter_mut().zip(&mut self.implicit).enumerate();
-            for (number, (body, memory)) in all.filter(|(_, (body, _))| body.moves()) {
-                // A scheme over two steps knows steps of one length.
-                body.state.past.is_known &= parts == 1;
-                let own =
-                    stages.run(Stage::Newton, || implicit::advance(body, memory, settings, from, dt, &drive, stages));
-                body.state.past.is_known &= parts == 1;
+            let interval = Interval { from, dt, drive: &drive };
+            // A scheme over two steps knows steps of one length.
+            self.bodies.iter_mut().for_each(|body| body.state.past.is_known &= parts == 1);
+            for number in 0..self.bodies.len() {
+                let Some(together) = Together::led_by(number, &mut self.tied) else { continue };
+                if !self.bodies[number].moves() {
+                    continue;
+                }
+                let all = (&mut self.bodies[..], &mut self.implicit[..]);
+                let own = stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, stages));
                 if !own.converged && settings.newton != Newton::Linearised {
                     unsolved = unsolved.or(Some((number, own)));
                 }
                 report = report.worst(own);
+            }
+            self.bodies.iter_mut().for_each(|body| body.state.past.is_known &= parts == 1);
+            for tied in &self.tied {
+                tied.each_impulse(|number, impulse| self.attachments[number].impulse += impulse);
             }
             if unsolved.is_some() {
                 break;

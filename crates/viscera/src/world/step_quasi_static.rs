@@ -4,7 +4,8 @@ use crate::body::{NodeMotion, SimulatedBody};
 use crate::contact::ToolFrame;
 use crate::dynamics::Drive;
 use crate::dynamics::implicit::ImplicitReport;
-use crate::dynamics::quasi_static::{QuasiStatic, StaticReport};
+use crate::dynamics::quasi_static::{Bodies, QuasiStatic, StaticReport};
+use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::solver::Iterative;
@@ -23,24 +24,39 @@ impl<T: Scalar> World<T> {
             self.lead_tools(span);
             self.move_tools(span, 0.0, 1.0);
         });
+        self.begin_attachments();
         let gravity = Vec3::from(self.config.gravity).cast();
         let drive = Drive { end: span.to, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-        let mut solver = Iterative::default();
-        let mut report = ImplicitReport::NOTHING;
-        for body in moving(&mut self.bodies) {
-            if settings.small_strain {
+        if settings.small_strain {
+            for body in moving(&mut self.bodies) {
                 body.state.positions.clone_from(&body.rest);
                 body.state.positions_changed();
             }
+        }
+        let mut report = ImplicitReport::NOTHING;
+        for number in 0..self.bodies.len() {
+            let Some(mut together) = Together::led_by(number, &mut self.tied) else { continue };
+            if !self.bodies[number].moves() {
+                continue;
+            }
+            let (bodies, mut solver) = match &mut together {
+                Together::Alone(number) => (Bodies::alone(&mut self.bodies[*number]), Iterative::default()),
+                Together::Tied(tied) => Bodies::tied(tied, &mut self.bodies),
+            };
             let found = stages.run(Stage::Newton, || {
                 let target = |body: &_, node: usize| drive.target(body, node, body.state.positions[node]);
-                settings.solve_driven(body, gravity, span.to, target, &mut solver)
+                settings.solve_driven(bodies, gravity, span.to, target, &mut solver)
             });
-            account_for_holding(body, &self.motion.frames, span.to - span.from);
+            if let Together::Tied(tied) = together {
+                tied.each_force(|number, force| self.attachments[number].impulse += force * self.config.step);
+            }
             match found {
                 Ok(own) => report = report.worst(summary(&own)),
                 Err(error) => return Err(StepError::NoEquilibrium { time: span.from, error }),
             }
+        }
+        for body in moving(&mut self.bodies) {
+            account_for_holding(body, &self.motion.frames, span.to - span.from);
         }
         Ok(Motion { substeps: 1, retries: 0, implicit: Some(report) })
     }

@@ -9,5 +9,6 @@ mod kinds;
 
 mod support;
 mod thin;
+mod tied;
 mod undo;
 mod weight;

@@ -15,6 +15,17 @@ pub(super) struct Balance {
     pub(super) scale: f64,
 }
 
+/// Squares of what is lacking and of inertial, external and internal forces [N²].
+pub(super) type Squares = [f64; 4];
+
+impl Balance {
+    /// From the squares over all nodes.
+    pub(super) fn of(squares: Squares) -> Self {
+        let [lack, inertial, external, internal] = squares.map(f64::sqrt);
+        Self { lack, scale: inertial + external + internal }
+    }
+}
+
 impl<T: Scalar> Step<'_, T> {
     /// What the forces at the beginning lack to balance: mass times acceleration.
     pub(super) fn balance_at_start(&mut self) {
@@ -28,8 +39,8 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// The forces at y = x + θ δ and what they lack to balance.
-    pub(super) fn evaluate(&mut self) -> Balance {
+    /// The forces at y = x + θ δ and what they lack to balance; gives their squares.
+    pub(super) fn evaluate(&mut self) -> Squares {
         let place = T::from_f64(self.numbers.place);
         if self.go_to(place) {
             self.body.state.positions_changed();
@@ -116,8 +127,8 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// R − F − C v − M a of the nodes that forces move.
-    pub(super) fn find_lack(&mut self) -> Balance {
+    /// R − F − C v − M a of the nodes that forces move; gives the squares of it and of inertial, external and internal forces.
+    pub(super) fn find_lack(&mut self) -> Squares {
         let inertia = T::from_f64(self.numbers.inertia / (self.dt * self.dt));
         let (body, memory) = (&*self.body, &mut *self.memory);
         let (increment, coast, damping, filters) = (&memory.increment, &memory.coast, &memory.damping, &memory.filters);
@@ -141,7 +152,6 @@ impl<T: Scalar> Step<'_, T> {
         if !self.body.contacts.is_empty() || !self.memory.dragged.is_empty() {
             squares = self.add_tools(squares);
         }
-        let [lack, inertial, external, internal] = squares.map(f64::sqrt);
-        Balance { lack, scale: inertial + external + internal }
+        squares
     }
 }

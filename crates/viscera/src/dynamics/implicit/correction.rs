@@ -26,9 +26,9 @@ pub(super) struct Solve {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Solves for the correction of δ; it holds the guess. The system is that of Newton's method over the factor of the stiffness,
-    /// which saves its product with every vector.
-    pub(super) fn correct(&mut self) -> Solve {
+    /// Puts together the linear system of Newton's method over the factor of the stiffness, which saves its product with every vector; all but
+    /// its right-hand side. Gives whether tools touch, whose springs have their stiffness now and change what is to be balanced.
+    pub(super) fn assemble(&mut self) -> bool {
         self.body.linearize(self.stages);
         let (numbers, dt) = (self.numbers, self.dt);
         let (alpha, beta) = (self.body.stiffness_damping.to_f64(), self.body.damping.to_f64());
@@ -43,7 +43,8 @@ impl<T: Scalar> Step<'_, T> {
         });
         let contacts = &mut self.body.contacts;
         let touches = !contacts.is_empty();
-        let rounding = self.stages.run(Stage::Preconditioner, || {
+        memory.stiffness = stiffness;
+        memory.rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
             if memory.matrix.is_none() && memory.multigrid.is_none() {
                 let blocks = memory.preconditioner.blocks_mut();
@@ -75,12 +76,15 @@ impl<T: Scalar> Step<'_, T> {
             memory.preconditioner.invert(&memory.masses, &memory.filters, &executor);
             rounding
         });
-        if touches {
-            // Now that the springs have their stiffness, their forces belong to what is to be balanced.
-            self.find_lack();
-        }
+        touches
+    }
+
+    /// Solves for the correction of δ, which holds the guess.
+    pub(super) fn solve(&mut self) -> Solve {
+        let executor = self.body.scratch.executor.clone();
         let (state, memory) = (&self.body.state, &mut *self.memory);
         let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));
+        let stiffness = memory.stiffness;
         executor.each(node_blocks(memory.lack.len()), rhs, &|_, (NodeBlocks(rhs), ReadBlocks(lack))| {
             rhs.iter_mut().zip(lack).for_each(|(rhs, &lack)| *rhs = lack * (T::ONE / stiffness));
         });
@@ -121,7 +125,7 @@ impl<T: Scalar> Step<'_, T> {
             residual: report.residual,
             converged: stop.accepts(report.ending),
             negative_curvature: report.ending == Ending::NegativeCurvature,
-            rounding,
+            rounding: memory.rounding,
         }
     }
 }

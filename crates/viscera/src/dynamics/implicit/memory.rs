@@ -30,6 +30,10 @@ pub struct ImplicitMemory<T> {
     pub(super) rhs: Vec<Vec3<T>>,
     /// The masses' part of the matrix, over the factor of the stiffness [kg/s²].
     pub(super) masses: Vec<T>,
+    /// The factor of the stiffness, by which the linear system is divided.
+    pub(super) stiffness: T,
+    /// Forces that rounding of the positions makes [N].
+    pub(super) rounding: f64,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
@@ -63,6 +67,8 @@ impl<T: Scalar> ImplicitMemory<T> {
             nodal: zeros(),
             damping: zeros(),
             masses: vec![T::ZERO; nodes],
+            stiffness: T::ONE,
+            rounding: 0.0,
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),

@@ -14,6 +14,8 @@
 //!
 //! (M + Δt C + Δt² K) Δv = Δt (R − F(x) − Δt K v − C v),   v + Δv = δ/Δt
 //!
+//! Bodies that ties hold together are solved as one (`group.rs`): every place that Newton's method tries fulfils the ties.
+//!
 //! Source: Baraff, Witkin, Large steps in cloth simulation (1998); Nesme et al. (2005).
 
 mod backward_euler;
@@ -21,6 +23,7 @@ mod balance;
 mod bdf2;
 mod correction;
 mod energy_momentum;
+mod group;
 mod memory;
 mod newmark;
 mod newton;
@@ -29,10 +32,12 @@ mod scheme;
 mod settings;
 mod step;
 mod tangent;
+mod ties;
 mod tools;
 
+pub(crate) use group::{Interval, advance};
 pub use memory::ImplicitMemory;
 pub use report::ImplicitReport;
 pub use scheme::Scheme;
 pub use settings::{Implicit, MatrixForm, Newton, Preconditioning};
-pub use step::advance;
+pub(crate) use ties::ImplicitTies;

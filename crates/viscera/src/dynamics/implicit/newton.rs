@@ -3,6 +3,7 @@
 use super::ImplicitReport;
 use super::balance::Balance;
 use super::correction::Solve;
+use super::group::Group;
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tools::Guess;
@@ -29,12 +30,12 @@ const DECIDED: u32 = 20;
 /// The most lengths that the line search tries.
 const TRIALS: u32 = 10;
 
-impl<T: Scalar> Step<'_, T> {
+impl<T: Scalar> Group<'_, T> {
     /// One linear solve from where the body is; or what stands in for it where that says nothing.
     pub(super) fn solve_linearised(&mut self) -> ImplicitReport {
         let before = self.evaluate();
         let arrived = self.go_on();
-        self.memory.correction.copy_from_slice(&self.memory.coast);
+        self.each(|step| step.memory.correction.copy_from_slice(&step.memory.coast));
         self.meet_tools(Guess::Coast);
         let mut solve = self.correct();
         for _ in 1..ROUNDS {
@@ -54,7 +55,7 @@ impl<T: Scalar> Step<'_, T> {
             let astray = climbed || after.lack > before.lack.max(ASTRAY * after.scale);
             let astray = astray && after.lack > solve.rounding;
             if !astray && after.lack.is_finite() {
-                self.memory.is_linear = true;
+                self.each(|step| step.memory.is_linear = true);
                 return ImplicitReport {
                     newton_iterations: 1,
                     linear_iterations: solve.iterations,
@@ -63,7 +64,7 @@ impl<T: Scalar> Step<'_, T> {
                     negative_curvature: false,
                 };
             }
-            self.memory.increment.fill(Vec3::ZERO);
+            self.each(|step| step.memory.increment.fill(Vec3::ZERO));
         }
         let (relative, at_most) = INSTEAD;
         let report = self.solve_in_full(relative, at_most);
@@ -76,14 +77,14 @@ impl<T: Scalar> Step<'_, T> {
 
     /// Linear solves with a line search, until the forces balance.
     pub(super) fn solve_in_full(&mut self, relative: f64, at_most: u32) -> ImplicitReport {
-        self.memory.is_linear = false;
+        self.each(|step| step.memory.is_linear = false);
         let mut report = ImplicitReport { converged: false, ..ImplicitReport::NOTHING };
         let mut balance = self.evaluate();
         let (mut scale, mut floor) = (0.0f64, 0.0);
         loop {
             scale = scale.max(balance.scale);
             report.residual = if scale > 0.0 { balance.lack / scale } else { 0.0 };
-            self.memory.history.push(report.residual);
+            self.each(|step| step.memory.history.push(report.residual));
             let arrived = self.go_on();
             let guess = if report.newton_iterations == 0 { Guess::Coast } else { Guess::Increment };
             let news = report.newton_iterations < DECIDED && self.meet_tools(guess);
@@ -94,11 +95,14 @@ impl<T: Scalar> Step<'_, T> {
             if report.converged || report.newton_iterations == at_most || !balance.lack.is_finite() {
                 return report;
             }
-            if report.newton_iterations == 0 {
-                self.memory.correction.copy_from_slice(&self.memory.coast);
-            } else {
-                self.memory.correction.fill(Vec3::ZERO);
-            }
+            let first = report.newton_iterations == 0;
+            self.each(|step| {
+                if first {
+                    step.memory.correction.copy_from_slice(&step.memory.coast);
+                } else {
+                    step.memory.correction.fill(Vec3::ZERO);
+                }
+            });
             let solve = self.correct();
             floor = solve.rounding;
             report.newton_iterations += 1;
@@ -106,47 +110,6 @@ impl<T: Scalar> Step<'_, T> {
             report.negative_curvature |= solve.negative_curvature;
             balance = self.search(arrived);
         }
-    }
-
-    /// Sets what driven nodes still have to go; gives whether all are where they have to be.
-    fn go_on(&mut self) -> bool {
-        let ImplicitMemory { prescribed, coast, increment, filters, .. } = &mut *self.memory;
-        let parts = node_blocks(prescribed.len());
-        let work = |block: usize, NodeBlocks(prescribed): NodeBlocks<'_, Vec3<T>>| {
-            let mut arrived = true;
-            for (i, prescribed) in prescribed.iter_mut().enumerate() {
-                let node = block * NODE_BLOCK + i;
-                *prescribed = Vec3::ZERO;
-                if filters[node] == Filter::Free {
-                    continue;
-                }
-                let rest = coast[node] - increment[node];
-                let rest = rest - filters[node].apply(rest);
-                // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
-                let ways = coast[node].norm() + increment[node].norm();
-                let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
-                if !is_there {
-                    *prescribed = rest;
-                }
-                arrived &= is_there;
-            }
-            arrived
-        };
-        let executor = &self.body.scratch.executor;
-        executor.fold(parts, NodeBlocks(prescribed), &work, &|a, b| a && b).unwrap_or(true)
-    }
-
-    /// Work of what the forces lack to balance against the correction [J], in the free directions: reactions are larger by far,
-    /// and would turn the rounding of a correction across them into work.
-    fn work(&self) -> f64 {
-        let ImplicitMemory { filters, lack, correction, .. } = &*self.memory;
-        let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
-            let nodes = block * NODE_BLOCK..;
-            let free = filters[nodes.clone()].iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
-            free.zip(&correction[nodes]).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
-        };
-        let executor = &self.body.scratch.executor;
-        -executor.fold(node_blocks(lack.len()), ReadBlocks(lack), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 
     /// Moves along the correction, as far as it leads towards balance: neither up again nor where most of the way down is left.
@@ -179,5 +142,48 @@ impl<T: Scalar> Step<'_, T> {
             balance = self.evaluate();
         }
         balance
+    }
+}
+
+impl<T: Scalar> Step<'_, T> {
+    /// Sets what driven nodes still have to go; gives whether all are where they have to be.
+    pub(super) fn go_on(&mut self) -> bool {
+        let ImplicitMemory { prescribed, coast, increment, filters, .. } = &mut *self.memory;
+        let parts = node_blocks(prescribed.len());
+        let work = |block: usize, NodeBlocks(prescribed): NodeBlocks<'_, Vec3<T>>| {
+            let mut arrived = true;
+            for (i, prescribed) in prescribed.iter_mut().enumerate() {
+                let node = block * NODE_BLOCK + i;
+                *prescribed = Vec3::ZERO;
+                if filters[node] == Filter::Free {
+                    continue;
+                }
+                let rest = coast[node] - increment[node];
+                let rest = rest - filters[node].apply(rest);
+                // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
+                let ways = coast[node].norm() + increment[node].norm();
+                let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
+                if !is_there {
+                    *prescribed = rest;
+                }
+                arrived &= is_there;
+            }
+            arrived
+        };
+        let executor = &self.body.scratch.executor;
+        executor.fold(parts, NodeBlocks(prescribed), &work, &|a, b| a && b).unwrap_or(true)
+    }
+
+    /// Work of what the forces lack to balance against the correction [J], in the free directions: reactions are larger by far,
+    /// and would turn the rounding of a correction across them into work.
+    pub(super) fn work(&self) -> f64 {
+        let ImplicitMemory { filters, lack, correction, .. } = &*self.memory;
+        let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
+            let nodes = block * NODE_BLOCK..;
+            let free = filters[nodes.clone()].iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
+            free.zip(&correction[nodes]).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
+        };
+        let executor = &self.body.scratch.executor;
+        -executor.fold(node_blocks(lack.len()), ReadBlocks(lack), &work, &|a, b| a + b).unwrap_or(0.0)
     }
 }

@@ -1,6 +1,6 @@
+use super::Implicit;
 use super::memory::ImplicitMemory;
 use super::scheme::{Numbers, Past, Start};
-use super::{Implicit, ImplicitReport, Newton};
 use crate::body::SimulatedBody;
 use crate::dynamics::Drive;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
@@ -8,34 +8,7 @@ use crate::math::{Scalar, Vec3};
 use crate::solver::Filter;
 use crate::stage::Stages;
 
-/// Advances a body, in memory of its own, from time `from` [s] by `dt` [s] to `drive.end`.
-pub fn advance<T: Scalar>(
-    body: &mut SimulatedBody<T>,
-    memory: &mut ImplicitMemory<T>,
-    settings: &Implicit,
-    from: f64,
-    dt: f64,
-    drive: &Drive<'_, T>,
-    stages: Stages,
-) -> ImplicitReport {
-    let numbers = settings.scheme.numbers(body.state.past.is_known);
-    let mut step = Step { body, memory, settings, numbers, from, dt, drive, stages };
-    step.begin();
-    let mut report = step.solve();
-    for _ in 0..SLIPS {
-        if !step.slip() {
-            break;
-        }
-        report = report.then(step.solve());
-    }
-    step.finish();
-    report
-}
-
-/// How many times nodes that slip through jaws are let go in a step; the first time sees nearly all of them.
-const SLIPS: u32 = 4;
-
-/// One implicit step of one body, whatever the scheme.
+/// One implicit step of one body, whatever the scheme: its part in the equations of those that are solved together.
 pub(super) struct Step<'a, T: Scalar> {
     pub(super) body: &'a mut SimulatedBody<T>,
     pub(super) memory: &'a mut ImplicitMemory<T>,
@@ -48,15 +21,8 @@ pub(super) struct Step<'a, T: Scalar> {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    fn solve(&mut self) -> ImplicitReport {
-        match self.settings.newton {
-            Newton::Linearised => self.solve_linearised(),
-            Newton::Full { relative, at_most } => self.solve_in_full(relative, at_most),
-        }
-    }
-
-    /// Where nodes would go without forces, and where driven ones have to go.
-    fn begin(&mut self) {
+    /// Remembers the beginning, and finds the accelerations there where the scheme needs them.
+    pub(super) fn begin(&mut self) {
         self.memory.start.copy_from_slice(&self.body.state.positions);
         self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
@@ -66,6 +32,10 @@ impl<T: Scalar> Step<'_, T> {
         if self.settings.scheme.needs_acceleration() {
             self.balance_at_start();
         }
+    }
+
+    /// Where nodes would go without forces, and where driven ones have to go.
+    pub(super) fn coast(&mut self) {
         let (body, drive, scheme, dt) = (&*self.body, self.drive, self.settings.scheme, T::from_f64(self.dt));
         let ImplicitMemory { increment, coast, coast_velocities, filters, lack, .. } = &mut *self.memory;
         let (state, lack, parts) = (&body.state, &lack[..], node_blocks(lack.len()));
@@ -115,7 +85,7 @@ impl<T: Scalar> Step<'_, T> {
     }
 
     /// The state at the end of the step.
-    fn finish(&mut self) {
+    pub(super) fn finish(&mut self) {
         self.account_for_tools();
         let (memory, numbers, dt) = (&*self.memory, self.numbers, self.dt);
         let (state, executor) = (&mut self.body.state, &self.body.scratch.executor);

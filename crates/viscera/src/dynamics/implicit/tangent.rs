@@ -1,3 +1,5 @@
+use super::memory::ImplicitMemory;
+use crate::body::SimulatedBody;
 use crate::contact::Contacts;
 use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
@@ -16,6 +18,21 @@ pub(super) struct Tangent<'a, T: Scalar> {
     /// Springs that the assembled matrix does not have, and one over the factor of the stiffness.
     pub(super) contacts: (&'a Contacts, f64),
     pub(super) stages: Stages<'a>,
+}
+
+impl<'a, T: Scalar> Tangent<'a, T> {
+    /// That of a body whose system is put together.
+    pub(super) fn of(body: &'a mut SimulatedBody<T>, memory: &'a mut ImplicitMemory<T>, stages: Stages<'a>) -> Self {
+        Self {
+            models: &body.state.models,
+            positions: &body.state.positions,
+            scratch: &mut body.scratch,
+            assembled: memory.matrix.as_mut(),
+            masses: &memory.masses,
+            contacts: (&body.contacts, 1.0 / memory.stiffness.to_f64()),
+            stages,
+        }
+    }
 }
 
 impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {

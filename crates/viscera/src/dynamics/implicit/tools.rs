@@ -86,13 +86,14 @@ impl<T: Scalar> Step<'_, T> {
                 memory.coast_velocities[node] = coast.velocity;
             }
         }
-        let slips = self.memory.dragged.len() > known;
-        if slips {
-            self.body.contacts.clear();
-            self.memory.increment.fill(Vec3::ZERO);
-            self.memory.history.clear();
-        }
-        slips
+        self.memory.dragged.len() > known
+    }
+
+    /// Forgets what was found, for the step to be solved again.
+    pub(super) fn start_again(&mut self) {
+        self.body.contacts.clear();
+        self.memory.increment.fill(Vec3::ZERO);
+        self.memory.history.clear();
     }
 
     /// The force that carries a held node through the step [N]: what the other forces on it lack, in the equations that were solved, and

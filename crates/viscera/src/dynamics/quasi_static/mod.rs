@@ -11,13 +11,18 @@
 //! lowers the energy W(x) − f_ext·x (Nocedal, Wright, Numerical optimization, 2006, sections 3.4 and 3.5). K has the symmetric
 //! part of the derivative of loads that follow the surface (pressures): all of it but at the rim of the loaded surface.
 //!
+//! Bodies that ties hold together have one system: every p and every jump of what is held fulfils the ties, and what they give is taken out of
+//! the residual.
+//!
 //! A state counts when its residual is small, its stiffness positive definite without a shift, and no cell inverted. Laws
 //! without a barrier, as St Venant–Kirchhoff, have other equilibria, inside out, which are no answers.
 
+mod bodies;
 mod equilibrium;
 mod error;
 mod response;
 
+pub(crate) use bodies::Bodies;
 pub use error::{StaticError, StaticFailure};
 pub use response::respond;
 
@@ -74,7 +79,7 @@ impl StaticReport {
 }
 
 impl QuasiStatic {
-    /// Brings a body to rest under gravity [m/s²], its loads and prescribed motions as they are at `time` [s]. Velocities
+    /// Brings a body to rest by itself, whatever it is attached to, under gravity [m/s²], its loads and prescribed motions as they are at `time` [s]. Velocities
     /// become zero. Nodes that an instrument holds stay where they are.
     ///
     /// # Errors
@@ -87,13 +92,13 @@ impl QuasiStatic {
         solver: &mut dyn LinearSolver,
     ) -> Result<StaticReport, StaticError> {
         let gravity = Vec3::from(gravity).cast();
-        self.solve_driven(body, gravity, time, |body, node| body.driven_to(node, time), solver)
+        self.solve_driven(Bodies::alone(body), gravity, time, |body, node| body.driven_to(node, time), solver)
     }
 
     /// The same with the places of held nodes from `target`.
     pub(crate) fn solve_driven<T: Scalar>(
         &self,
-        body: &mut SimulatedBody<T>,
+        bodies: Bodies<'_, T>,
         gravity: Vec3<T>,
         time: f64,
         target: impl Fn(&SimulatedBody<T>, usize) -> Option<Vec3<T>>,
@@ -102,13 +107,15 @@ impl QuasiStatic {
         if let Some((name, value, range)) = self.first_out_of_range() {
             return Err(StaticError::OutOfRange { name, value, range });
         }
-        if let Some(advice) = body.model.info().no_implicit {
-            return Err(StaticError::ModelHasNoEquilibrium { body: body.name.clone(), model: body.model, advice });
+        for body in &bodies.all {
+            if let Some(advice) = body.model.info().no_implicit {
+                return Err(StaticError::ModelHasNoEquilibrium { body: body.name.clone(), model: body.model, advice });
+            }
+            if let Some(feature) = body.explicit_feature() {
+                return Err(StaticError::FeatureHasNoEquilibrium { body: body.name.clone(), feature });
+            }
         }
-        if let Some(feature) = body.explicit_feature() {
-            return Err(StaticError::FeatureHasNoEquilibrium { body: body.name.clone(), feature });
-        }
-        let mut equilibrium = Equilibrium::new(body, gravity, time, target, solver)?;
+        let mut equilibrium = Equilibrium::new(bodies, gravity, time, target, solver)?;
         let report = if self.small_strain { equilibrium.solve_once() } else { self.raise_load(&mut equilibrium) };
         equilibrium.come_to_rest();
         report

@@ -28,7 +28,7 @@ pub fn respond<T: Scalar>(
     let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
     let mut system = System { matrix: BlockMatrix::new(&body.mesh, state.reach()), filters };
     body.is_linearized = false;
-    let (state, mut sink) = (&body.state, Widen(&mut system.matrix));
+    let (state, mut sink) = (&body.state, Widen { matrix: &mut system.matrix, start: 0 });
     for model in &state.models {
         model.linearize(&state.positions, &mut body.scratch);
         model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
