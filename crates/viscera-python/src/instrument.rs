@@ -56,9 +56,10 @@ pub(crate) struct PyGrasper(Grasper);
 
 #[pymethods]
 impl PyGrasper {
-    /// The tip's `path` [m] as for `Probe`, the `radius` within which it holds nodes [m], when the jaws `close` [s] (never by default: a
-    /// hand closes them), and when they `open` again. `jaws`: (length, radius, opening) [m, m, rad], and `shaft`: (radius,
-    /// length) [m], are what tissue touches; without them it touches nothing. `grip`: force beyond which it slips [N].
+    /// The tip's `path` [m] as for `Probe`, the `radius` within which it holds nodes where it has no jaws [m], when the jaws `close` [s]
+    /// (never by default: a hand closes them), and when they `open` again. `jaws`: (length, radius, opening) [m, m, rad], and `shaft`:
+    /// (radius, length) [m], are what tissue touches; without them it touches nothing. Jaws hold what they sweep over when they close, and
+    /// the cells that reach in between them. `grip`: force beyond which it slips [N].
     #[new]
     #[pyo3(signature = (path=None, *, radius=0.01, close=f64::INFINITY, open=None, direction=None, roll=0.0, trocar=None, jaws=None,
         shaft=None, friction=None, grip=f64::INFINITY))]

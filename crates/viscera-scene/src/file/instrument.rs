@@ -31,8 +31,8 @@ pub enum InstrumentFile {
     Grasper {
         /// Way of the tip [m].
         path: CurveFile<[Length; 3]>,
-        /// The jaws take the nodes within it of the tip, and of the line from there to the hinge [m]; by default 10 mm, the half
-        /// length of a bowel grasper's jaws.
+        /// How near the tip has to come to where a hand leads it before the jaws close [m]; by default 10 mm. Without jaws, the tip
+        /// takes the nodes within it; jaws take what they sweep over when they close, and the cells that reach in between them.
         #[serde(default = "ten_millimetres")]
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: Length,

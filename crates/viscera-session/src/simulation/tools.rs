@@ -130,7 +130,7 @@ pub(crate) fn lead_as_before(
 pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
     let kind = named(kind)?;
     with!(world, world => {
-        let instrument = instrument(world, kind, radius, hand);
+        let instrument = instrument(kind, radius, hand);
         world.add_instrument(instrument).map(|_| ())
     })
     .map_err(text)
@@ -140,7 +140,7 @@ pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) ->
 fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
     let kind = named(kind)?;
     with!(world, world => {
-        let instrument = instrument(world, kind, radius, hand);
+        let instrument = instrument(kind, radius, hand);
         world.replace_instrument(id(number), instrument)
     })
     .map_err(text)
@@ -173,21 +173,7 @@ fn proportion(radius: f64) -> f64 {
     if (0.2..5.0).contains(&(radius / USUAL_RADIUS)) { 1.0 } else { radius / USUAL_RADIUS }
 }
 
-/// Mean edge of the surface of the coarsest body at rest [m].
-fn coarseness<T: Scalar>(world: &World<T>) -> f64 {
-    let mean = |body: BodyId| {
-        let (body, nodes) = (world.body(body), world.body(body).mesh().nodes());
-        let edges = body.surface().into_iter().flat_map(|triangle| {
-            let [a, b, c] = triangle.nodes.map(|node| nodes[node as usize]);
-            [a - b, b - c, c - a].map(|edge| edge.norm())
-        });
-        let (sum, count) = edges.fold((0.0, 0.0), |(sum, count), edge| (sum + edge, count + 1.0));
-        if count > 0.0 { sum / count } else { 0.0 }
-    };
-    world.body_ids().map(mean).fold(0.0, f64::max)
-}
-
-fn instrument<T: Scalar>(world: &World<T>, kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
+fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
     let size = proportion(radius);
     let path = Curve::constant(Vec3::from(hand.tip));
     let mount = Mount { roll: hand.roll, ..Mount::along(hand.direction.into()) };
@@ -197,8 +183,7 @@ fn instrument<T: Scalar>(world: &World<T>, kind: InstrumentKind, radius: f64, ha
         InstrumentKind::Grasper => Box::new(Grasper {
             path,
             mount,
-            // Jaws hold nodes, and dent the tissue before they close: short of an edge, they held none of a liver with cells of 24 mm.
-            radius: (0.012 * size).max(coarseness(world)),
+            radius: 0.012 * size,
             jaws: Some(Jaws { length: 0.02 * size, radius: 1.5e-3 * size, ..Jaws::default() }),
             shaft: Some(shaft),
             grip: GRIP * size * size,

@@ -1,6 +1,6 @@
 use viscera_session::message::{Command, RunState};
 
-use crate::support::{BAR, Page};
+use crate::support::{BAR, Page, light_bar};
 
 /// Simulated time is that of the clock, and stands still while it is paused.
 #[test]
@@ -58,16 +58,16 @@ fn a_snapshot_goes_on_to_the_same_bits_parameters_and_all() {
 /// Jaws that close on the free end of the bar carry it along, and the hand feels its weight.
 #[test]
 fn a_grasper_carries_what_it_closes_on() {
-    let mut page = Page::open(BAR);
-    // Its tip just above the end of the bar.
-    let grasper = page.add("grasper", [0.02, 0.043, 0.115], [0.0, -1.0, 0.0]);
+    let mut page = Page::open(&light_bar());
+    // Its tip in the end of the bar, which the closing jaws sweep over.
+    let grasper = page.add("grasper", [0.02, 0.036, 0.115], [0.0, -1.0, 0.0]);
     page.step(1);
-    page.lead(grasper, [0.02, 0.043, 0.115], 1.0);
+    page.lead(grasper, [0.02, 0.036, 0.115], 1.0);
     page.step(3);
     assert!(page.frame().instruments[0].holds, "{:?}", page.notices());
     let before = page.lowest(0);
     for lift in 1..=20 {
-        page.lead(grasper, [0.02, 0.043 + 0.002 * f64::from(lift), 0.115], 1.0);
+        page.lead(grasper, [0.02, 0.036 + 0.002 * f64::from(lift), 0.115], 1.0);
         page.step(1);
     }
     let farthest = |page: &Page| page.frame().observables.as_ref().unwrap()[0].largest_displacement;
@@ -84,8 +84,8 @@ fn a_grasper_carries_what_it_closes_on() {
 /// Jaws hold with 10 N and no more: the bar, which takes 32 N for every time its length, slips through them when it is pulled further.
 #[test]
 fn tissue_slips_through_jaws_that_pull_too_much() {
-    let mut page = Page::open(BAR);
-    let place = |pull: f64| [0.02, 0.043, 0.115 + pull];
+    let mut page = Page::open(&light_bar());
+    let place = |pull: f64| [0.02, 0.036, 0.115 + pull];
     let grasper = page.add("grasper", place(0.0), [0.0, -1.0, 0.0]);
     page.step(1);
     page.lead(grasper, place(0.0), 1.0);
@@ -106,8 +106,8 @@ fn tissue_slips_through_jaws_that_pull_too_much() {
 /// A hand that came and closed the jaws while the simulation made one step of it: they hold what they were led to.
 #[test]
 fn jaws_hold_where_a_hurried_hand_closed_them() {
-    let mut page = Page::open(BAR);
-    let (above, end) = ([0.02, 0.12, 0.115], [0.02, 0.043, 0.115]);
+    let mut page = Page::open(&light_bar());
+    let (above, end) = ([0.02, 0.12, 0.115], [0.02, 0.036, 0.115]);
     let grasper = page.add("grasper", above, [0.0, -1.0, 0.0]);
     page.step(1);
     page.lead(grasper, [0.02, 0.08, 0.115], 0.0);

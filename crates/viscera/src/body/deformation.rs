@@ -1,6 +1,6 @@
 use super::SimulatedBody;
-use crate::math::{Mat3, Scalar};
-use crate::mesh::{Point, VolumeMesh, hexahedron_volume};
+use crate::math::{Mat3, Scalar, Vec3};
+use crate::mesh::{HEX_FACES, Point, TET_FACES, VolumeMesh, hexahedron_volume};
 
 impl<T: Scalar> SimulatedBody<T> {
     /// Volume of a cell now [m³]; negative where the cell is turned inside out.
@@ -18,6 +18,26 @@ impl<T: Scalar> SimulatedBody<T> {
     /// V/V0 of a cell: 1 at rest, negative where the cell is turned inside out.
     pub fn volume_ratio(&self, cell: usize) -> f64 {
         self.cell_volume(cell) / self.cell_volumes[cell]
+    }
+
+    /// Smallest and largest coordinates of a cell now [m].
+    pub(crate) fn cell_bounds(&self, cell: usize) -> (Point, Point) {
+        let places = self.mesh.cell(cell).iter().map(|&node| self.state.positions[node as usize].cast::<f64>());
+        let nowhere = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
+        places.fold(nowhere, |(low, high), place| (low.min(place), high.max(place)))
+    }
+
+    /// Whether a place is in a cell as it is now; hexahedra as if their faces were flat.
+    pub(crate) fn is_in_cell(&self, cell: usize, place: Point) -> bool {
+        let at = |node: u32| self.state.positions[node as usize].cast::<f64>();
+        let within = |corners: &[u32], face: &[usize]| {
+            let [a, b, c] = [face[0], face[1], face[2]].map(|corner| at(corners[corner]));
+            (b - a).cross(c - a).dot(place - a) <= 0.0
+        };
+        match &self.mesh {
+            VolumeMesh::Tet(mesh) => TET_FACES.iter().all(|face| within(&mesh.cells[cell], face)),
+            VolumeMesh::Hex(mesh) => HEX_FACES.iter().all(|face| within(&mesh.cells[cell], face)),
+        }
     }
 
     /// Deformation gradient F of a cell now; of a hexahedron, that at its centre.

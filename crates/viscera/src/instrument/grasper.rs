@@ -4,7 +4,11 @@ use crate::curve::Curve;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::Point;
 
-/// Jaws that take the nodes between them when they close and carry them along until they open.
+/// Jaws that take what is between them when they close and carry it along until they open.
+///
+/// That is what the two rods of the jaws sweep over from as far as they open until they are closed: the nodes in there, and the corners of
+/// the cells that reach in between the axes of the jaws, so that jaws finer than the cells hold the tissue that they close on. Without jaws it is
+/// the nodes near the tip.
 ///
 /// A node that needs more than its share of the grip to be carried slips through the jaws, and is dragged with that share.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +17,8 @@ pub struct Grasper {
     pub path: Path,
     /// How they are led along the path.
     pub mount: Mount,
-    /// The jaws hold what is this near to them, from hinge to tip [m, > 0]; 10 mm by default.
+    /// How near the tip has to come to where a hand leads it before its pull closes the jaws [m, > 0]; 10 mm by default. Without jaws, the tip
+    /// holds the nodes that are this near to it.
     pub radius: f64,
     /// When they close [s]; never by default: for a hand that pulls the trigger.
     pub close: f64,
@@ -100,10 +105,16 @@ impl<T: Scalar> Instrument<T> for Grasper {
     }
 
     fn takes_hold_of(&self, pose: &ToolPose, place: Point) -> bool {
-        let from_tip = place - pose.tip;
-        let length = self.jaws.map_or(0.0, |jaws| jaws.length);
-        let behind = (-from_tip.dot(pose.direction)).clamp(0.0, length);
-        (from_tip + pose.direction * behind).squared_norm() <= self.radius * self.radius
+        match self.jaws {
+            Some(jaws) => jaws.sweep_over(pose, place),
+            None => (place - pose.tip).squared_norm() <= self.radius * self.radius,
+        }
+    }
+
+    fn each_place_between(&self, pose: &ToolPose, visit: &mut dyn FnMut(Point)) {
+        if let Some(jaws) = self.jaws {
+            jaws.each_place_between(pose, visit);
+        }
     }
 
     fn is_active(&self, time: f64) -> bool {

@@ -59,6 +59,8 @@ pub trait Instrument<T: Scalar>: std::fmt::Debug + Send + Sync {
     fn takes_hold_of(&self, _pose: &ToolPose, _place: Point) -> bool {
         false
     }
+    /// Visits places between its jaws: it takes hold of the cells around them as well when it closes.
+    fn each_place_between(&self, _pose: &ToolPose, _visit: &mut dyn FnMut(Point)) {}
     /// Whether it removes cells.
     fn cuts(&self) -> bool {
         false
@@ -103,6 +105,9 @@ impl<T: Scalar> Instrument<T> for Box<dyn Instrument<T>> {
     }
     fn takes_hold_of(&self, pose: &ToolPose, place: Point) -> bool {
         self.as_ref().takes_hold_of(pose, place)
+    }
+    fn each_place_between(&self, pose: &ToolPose, visit: &mut dyn FnMut(Point)) {
+        self.as_ref().each_place_between(pose, visit);
     }
     fn cuts(&self) -> bool {
         self.as_ref().cuts()

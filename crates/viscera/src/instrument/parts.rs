@@ -2,6 +2,10 @@
 
 use super::{InstrumentError, ToolPose};
 use crate::contact::Capsule;
+use crate::mesh::Point;
+
+/// The most places that are looked at between jaws, along them and across: cells are coarser than a thirtieth of them.
+const MOST_PLACES: f64 = 32.0;
 
 /// A round rod that ends at the tip, or at the hinge of the jaws.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +66,49 @@ impl Jaws {
                 radius: self.radius,
             }
         })
+    }
+
+    /// Half the angle between the axes of the jaws as far as they open [rad], and how long these are [m].
+    fn sector(&self) -> (f64, f64) {
+        let (sin, cos) = (0.5 * self.opening).sin_cos();
+        let (across, along) = (self.length * sin + self.radius, self.length * cos);
+        (across.atan2(along), across.hypot(along))
+    }
+
+    /// Whether the jaws sweep over a place when they close, from as far as they open.
+    pub(super) fn sweep_over(&self, pose: &ToolPose, place: Point) -> bool {
+        let (half, length) = self.sector();
+        let from_hinge = place - (pose.tip - pose.direction * self.length);
+        let [across, ..] = pose.turn().columns;
+        let (x, y) = (from_hinge.dot(across), from_hinge.dot(pose.direction));
+        let beside = (from_hinge.squared_norm() - x * x - y * y).max(0.0);
+        // The nearest place between the axes: on an arc about the hinge, or on an axis.
+        let (angle, far) = (x.abs().atan2(y), x.hypot(y));
+        let squared = if angle <= half {
+            (far - length).max(0.0).powi(2)
+        } else {
+            let (sin, cos) = (angle - half).sin_cos();
+            let along = (far * cos).clamp(0.0, length);
+            (far * cos - along).powi(2) + (far * sin).powi(2)
+        };
+        squared + beside <= self.radius * self.radius
+    }
+
+    /// Places between the axes of the jaws as far as they open, a jaw's radius apart.
+    pub(super) fn each_place_between(&self, pose: &ToolPose, visit: &mut dyn FnMut(Point)) {
+        let (half, length) = self.sector();
+        let [across, ..] = pose.turn().columns;
+        let hinge = pose.tip - pose.direction * self.length;
+        let parts = |way: f64| (way / self.radius).ceil().clamp(1.0, MOST_PLACES) as u32;
+        let rings = parts(length);
+        for ring in 0..=rings {
+            let far = length * f64::from(ring) / f64::from(rings);
+            let turns = parts(2.0 * half * far);
+            for turn in 0..=turns {
+                let (sin, cos) = (half * (2.0 * f64::from(turn) / f64::from(turns) - 1.0)).sin_cos();
+                visit(hinge + (pose.direction * cos + across * sin) * far);
+            }
+        }
     }
 
     pub(super) fn check(&self, kind: &'static str) -> Result<(), InstrumentError> {
