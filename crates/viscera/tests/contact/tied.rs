@@ -180,18 +180,23 @@ fn hanging(integrator: Integrator) -> (World<f64>, BodyId, AttachmentId) {
     (world, below, id)
 }
 
-/// At rest an attachment pulls with the weight that hangs from it, in implicit steps and in equilibria.
+/// At rest an attachment pulls with the weight that hangs from it, in implicit steps and in equilibria. At small strain it does so but for what
+/// the law makes of displacements that are those of the stiffness at rest, as for every other reaction.
 #[test]
 fn an_attachment_carries_the_weight_below() {
     for integrator in every_integrator() {
-        if matches!(integrator, Integrator::Implicit(Implicit { scheme: Scheme::EnergyMomentum, .. })) {
-            continue; // NeoHookean tissue has no mean forces.
-        }
-        let is_static = matches!(integrator, Integrator::QuasiStatic(_));
+        let (steps, tolerance) = match integrator {
+            // Neo-Hookean tissue has no mean forces.
+            Integrator::Implicit(Implicit { scheme: Scheme::EnergyMomentum, .. }) => continue,
+            Integrator::QuasiStatic(QuasiStatic { small_strain: true, .. }) => (1, 0.05),
+            Integrator::QuasiStatic(_) => (1, 1e-8),
+            _ => (300, 1e-2),
+        };
         let (mut world, below, attachment) = hanging(integrator);
-        step(&mut world, if is_static { 1 } else { 300 });
+        step(&mut world, steps);
         let weight = Vector::from(GRAVITY) * world.observe(below).mass;
-        assert_vector(world.attachment_force(attachment), -weight, if is_static { 1e-8 } else { 1e-2 });
+        let error = (world.attachment_force(attachment) + weight).norm() / weight.norm();
+        assert!(error <= tolerance, "{integrator:?}: {error:.2e} of the weight is missing");
     }
 }
 
