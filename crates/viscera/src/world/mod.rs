@@ -4,6 +4,7 @@ mod attachment;
 mod config;
 mod error;
 mod forces;
+mod grip;
 mod observables;
 mod snapshot;
 mod statics;

@@ -1,10 +1,11 @@
 //! Tools of a world: who leads them, and how they go through a step.
 
+use super::grip::Grip;
 use super::{InstrumentId, Integrator, World, WorldError};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::contact::{Capsule, MovingCapsule, ToolFrame};
 use crate::instrument::{Instrument, InstrumentError, Span, ToolInput, ToolPose, ToolState, ToolUse};
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Scalar, Vec3};
 
 /// The trigger from which on jaws hold.
 const CLOSED: f64 = 0.5;
@@ -219,7 +220,7 @@ impl<T: Scalar> World<T> {
 
     fn take_hold(&mut self, number: usize) {
         let (tool, Some(instrument)) = (&mut self.tools[number], &self.instruments[number]) else { return };
-        let grip = Grip { tool: number as u32, pose: tool.pose, to_own: tool.pose.turn().transpose() };
+        let grip = Grip::new(number as u32, tool.pose);
         tool.held_nodes = 0;
         for body in &mut self.bodies {
             for node in 0..body.state.positions.len() {
@@ -313,46 +314,6 @@ impl<T: Scalar> World<T> {
         }
         self.move_tools(span, 0.0, 1.0);
         (way, ratio)
-    }
-}
-
-/// A tool that closes.
-struct Grip {
-    tool: u32,
-    pose: ToolPose,
-    to_own: Mat3<f64>,
-}
-
-impl Grip {
-    /// Holds a node from now on, if it can be held; gives how many that are.
-    fn hold<T: Scalar>(&self, body: &mut SimulatedBody<T>, node: usize) -> u32 {
-        if !body.can_be_held(node) {
-            return 0;
-        }
-        let place = body.state.positions[node].cast::<f64>();
-        body.state.motions[node] = NodeMotion::Held(self.tool);
-        body.state.grips[node] = (self.to_own * (place - self.pose.tip)).cast();
-        1
-    }
-
-    /// Holds the corners of cells that reach in between the jaws; gives how many that are.
-    fn hold_cells<T: Scalar>(&self, body: &mut SimulatedBody<T>, instrument: &dyn Instrument<T>) -> u32 {
-        let (mut low, mut high) = (Vec3::splat(f64::INFINITY), Vec3::splat(f64::NEG_INFINITY));
-        instrument.each_place_between(&self.pose, &mut |place| (low, high) = (low.min(place), high.max(place)));
-        let mut held = 0;
-        for cell in 0..body.mesh.cell_count() {
-            let (lowest, highest) = body.cell_bounds(cell);
-            let apart = (lowest - high).max(low - highest);
-            if body.state.removed[cell] || apart.x > 0.0 || apart.y > 0.0 || apart.z > 0.0 {
-                continue;
-            }
-            let mut reaches = false;
-            instrument.each_place_between(&self.pose, &mut |place| reaches = reaches || body.is_in_cell(cell, place));
-            for corner in 0..if reaches { body.mesh.cell(cell).len() } else { 0 } {
-                held += self.hold(body, body.mesh.cell(cell)[corner] as usize);
-            }
-        }
-        held
     }
 }
 
