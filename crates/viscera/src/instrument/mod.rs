@@ -14,6 +14,7 @@ pub use cautery::Cautery;
 pub use grasper::Grasper;
 pub use kind::InstrumentKind;
 pub use parts::{Jaws, Shaft};
+pub(crate) use pose::check_trocar;
 pub use pose::{Mount, ToolInput, ToolPose};
 pub use probe::Probe;
 pub use tool::ToolState;

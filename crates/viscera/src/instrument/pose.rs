@@ -58,7 +58,8 @@ pub struct Mount {
     pub direction: Path,
     /// How far it is turned about its direction [rad].
     pub roll: f64,
-    /// A point that the shaft always passes through [m], as through the wall of the belly: the direction follows from it and the tip.
+    /// A point that the shaft passes through [m], as through the wall of the belly: the direction follows from it and the tip.
+    /// [`World::set_trocar`](crate::world::World::set_trocar) moves it later.
     pub trocar: Option<Vec3<f64>>,
 }
 
@@ -79,16 +80,10 @@ impl Mount {
         Self { direction: Curve::constant(direction), ..Self::default() }
     }
 
-    /// The pose with its tip at `tip` at `time` [s].
-    pub(crate) fn pose(&self, tip: Point, time: f64) -> ToolPose {
+    /// The pose with its tip at `tip` at `time` [s], through `trocar`.
+    pub(crate) fn pose(&self, tip: Point, time: f64, trocar: Option<Point>) -> ToolPose {
         let given = self.direction.at(time).normalized().unwrap_or(DOWN);
-        self.guide(ToolPose { tip, direction: given, roll: self.roll })
-    }
-
-    /// The pose as the trocar lets it be; its direction must have a length.
-    pub(crate) fn guide(&self, pose: ToolPose) -> ToolPose {
-        let through = self.trocar.and_then(|trocar| (pose.tip - trocar).normalized());
-        ToolPose { direction: through.or(pose.direction.normalized()).unwrap_or(DOWN), ..pose }
+        ToolPose { tip, direction: given, roll: self.roll }.through(trocar)
     }
 
     pub(crate) fn check(&self, kind: &'static str) -> Result<(), InstrumentError> {
@@ -96,14 +91,27 @@ impl Mount {
         if let Some((_, direction)) = self.direction.points().iter().find(|(_, d)| d.normalized().is_none()) {
             return out_of_range("direction", direction.norm(), "a vector with a length");
         }
-        if let Some(trocar) = self.trocar.filter(|trocar| !trocar.is_finite()) {
-            return out_of_range("trocar", trocar.norm(), "finite [m]");
-        }
+        check_trocar(kind, self.trocar)?;
         if self.roll.is_finite() { Ok(()) } else { out_of_range("roll", self.roll, "finite [rad]") }
     }
 }
 
+pub(crate) fn check_trocar(kind: &'static str, trocar: Option<Point>) -> Result<(), InstrumentError> {
+    match trocar.filter(|trocar| !trocar.is_finite()) {
+        None => Ok(()),
+        Some(trocar) => {
+            Err(InstrumentError::OutOfRange { kind, name: "trocar", value: trocar.norm(), range: "finite [m]" })
+        }
+    }
+}
+
 impl ToolPose {
+    /// The pose as a trocar lets it be; its direction must have a length.
+    pub(crate) fn through(self, trocar: Option<Point>) -> Self {
+        let through = trocar.and_then(|trocar| (self.tip - trocar).normalized());
+        Self { direction: through.or(self.direction.normalized()).unwrap_or(DOWN), ..self }
+    }
+
     /// Its axes in the world: across, up, and along its direction, which must be of length 1.
     ///
     /// The shortest turn that leads from the world's −y to the direction, after the roll.
@@ -158,8 +166,8 @@ mod tests {
 
     #[test]
     fn a_tool_through_a_trocar_points_away_from_it() {
-        let mount = Mount::through(Point::new(0.0, 0.3, 0.0));
-        let pose = mount.guide(ToolPose { tip: Point::new(0.4, 0.0, 0.0), direction: DOWN, roll: 0.0 });
+        let pose = ToolPose { tip: Point::new(0.4, 0.0, 0.0), direction: DOWN, roll: 0.0 };
+        let pose = pose.through(Some(Point::new(0.0, 0.3, 0.0)));
         assert!((pose.direction - Point::new(0.8, -0.6, 0.0)).norm() < 1e-15);
     }
 }

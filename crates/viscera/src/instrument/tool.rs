@@ -8,6 +8,8 @@ use crate::math::Vec3;
 pub struct ToolState {
     /// Where it is; the direction has length 1.
     pub pose: ToolPose,
+    /// A point that its shaft passes through [m], if there is one.
+    pub trocar: Option<Vec3<f64>>,
     /// From 0 (jaws open, current off) to 1.
     pub trigger: f64,
     /// What leads it, if a hand does.
@@ -32,9 +34,10 @@ pub struct ToolState {
 
 impl ToolState {
     /// A tool that touches nothing.
-    pub(crate) fn new(pose: ToolPose) -> Self {
+    pub(crate) fn new(pose: ToolPose, trocar: Option<Vec3<f64>>) -> Self {
         Self {
             pose,
+            trocar,
             trigger: 0.0,
             hand: None,
             has_moved: false,

@@ -4,7 +4,7 @@ use super::grip::Grip;
 use super::{InstrumentId, Integrator, World, WorldError};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::contact::{Capsule, MovingCapsule, ToolFrame};
-use crate::instrument::{Instrument, InstrumentError, Span, ToolInput, ToolPose, ToolState, ToolUse};
+use crate::instrument::{Instrument, InstrumentError, Span, ToolInput, ToolPose, ToolState, ToolUse, check_trocar};
 use crate::math::{Scalar, Vec3};
 
 /// The trigger from which on jaws hold.
@@ -35,13 +35,15 @@ impl<T: Scalar> World<T> {
     pub fn add_instrument(&mut self, instrument: impl Instrument<T> + 'static) -> Result<InstrumentId, WorldError> {
         instrument.check()?;
         self.check_tool(&instrument)?;
-        self.tools.push(ToolState::new(scripted_pose(&instrument, self.time())));
+        let trocar = instrument.mount().trocar;
+        self.tools.push(ToolState::new(scripted_pose(&instrument, self.time(), trocar), trocar));
         self.instruments.push(Some(Box::new(instrument)));
         self.reserve_for_tools();
         Ok(InstrumentId(self.instruments.len() - 1))
     }
 
-    /// Puts another instrument into the place of one: what that held is let go. It keeps pose and hand where a hand leads it.
+    /// Puts another instrument into the place of one: what that held is let go. It keeps pose and hand where a hand leads it, and has a
+    /// trocar where its mount says.
     ///
     /// # Errors
     /// [`WorldError::MissingInstrument`] for one that is not there; the others as in [`World::add_instrument`].
@@ -55,9 +57,9 @@ impl<T: Scalar> World<T> {
         self.check_tool(&instrument)?;
         self.let_go(id);
         let (hand, pose) = (self.tools[id.0].hand, self.tools[id.0].pose);
-        let pose =
-            if hand.is_some() { instrument.mount().guide(pose) } else { scripted_pose(&instrument, self.time()) };
-        self.tools[id.0] = ToolState { hand, has_moved: hand.is_some(), ..ToolState::new(pose) };
+        let trocar = instrument.mount().trocar;
+        let pose = if hand.is_some() { pose.through(trocar) } else { scripted_pose(&instrument, self.time(), trocar) };
+        self.tools[id.0] = ToolState { hand, has_moved: hand.is_some(), ..ToolState::new(pose, trocar) };
         self.instruments[id.0] = Some(Box::new(instrument));
         self.reserve_for_tools();
         Ok(())
@@ -70,7 +72,7 @@ impl<T: Scalar> World<T> {
     pub fn remove_instrument(&mut self, id: InstrumentId) -> Result<(), WorldError> {
         self.check_instrument(id)?;
         self.let_go(id);
-        self.tools[id.0] = ToolState::new(self.tools[id.0].pose);
+        self.tools[id.0] = ToolState::new(self.tools[id.0].pose, None);
         self.instruments[id.0] = None;
         Ok(())
     }
@@ -93,11 +95,31 @@ impl<T: Scalar> World<T> {
             let (name, range) = ("speed", "positive [m/s]");
             return Err(InstrumentError::OutOfRange { kind, name, value: input.speed, range }.into());
         }
-        let pose = self.instrument(id).mount().guide(input.pose);
         let tool = &mut self.tools[id.0];
+        let pose = input.pose.through(tool.trocar);
         tool.hand = Some(ToolInput { trigger: input.trigger.clamp(0.0, 1.0), ..input });
         if !tool.has_moved {
             tool.pose = pose;
+        }
+        Ok(())
+    }
+
+    /// Leads the shaft of an instrument through a point [m] from the next step on, or lets it go. The tip stays where it is led: a
+    /// tool that has taken a step turns about it within the next one, and what is on the way of its shaft is pushed along. Without a
+    /// trocar one that a hand leads keeps its direction until the hand says another.
+    ///
+    /// # Errors
+    /// [`WorldError::MissingInstrument`] for one that is not there; [`WorldError::Instrument`] for a point that is none.
+    pub fn set_trocar(&mut self, id: InstrumentId, trocar: Option<Vec3<f64>>) -> Result<(), WorldError> {
+        self.check_instrument(id)?;
+        check_trocar(self.instrument(id).kind(), trocar)?;
+        let tool = &mut self.tools[id.0];
+        tool.trocar = trocar;
+        if !tool.has_moved {
+            tool.pose = tool.pose.through(trocar);
+        }
+        if let Some(hand) = &mut tool.hand {
+            hand.pose.direction = tool.pose.through(trocar).direction;
         }
         Ok(())
     }
@@ -141,7 +163,8 @@ impl<T: Scalar> World<T> {
             return Ok(());
         }
         let mut parts = Vec::new();
-        instrument.add_parts(&scripted_pose(instrument, self.time()), 0.0, &mut parts);
+        let pose = scripted_pose(instrument, self.time(), instrument.mount().trocar);
+        instrument.add_parts(&pose, 0.0, &mut parts);
         if parts.is_empty() && instrument.grip() == f64::INFINITY { Ok(()) } else { Err(WorldError::ToolsNeedMotion) }
     }
 
@@ -198,10 +221,10 @@ impl<T: Scalar> World<T> {
                 Some(hand) => {
                     let pose = hand.reached(&tool.pose, span.to - span.from);
                     let trigger = hand.pulled(&tool.pose, tool.trigger, instrument.reach());
-                    ToolInput { pose: instrument.mount().guide(pose), trigger, ..hand }
+                    ToolInput { pose: pose.through(tool.trocar), trigger, ..hand }
                 }
                 None => ToolInput::new(
-                    scripted_pose(instrument.as_ref(), span.to),
+                    scripted_pose(instrument.as_ref(), span.to, tool.trocar),
                     f64::from(u8::from(instrument.is_active_before(span.to))),
                 ),
             };
@@ -318,11 +341,12 @@ impl<T: Scalar> World<T> {
 }
 
 /// Where an instrument's script has it at `time` [s].
-fn scripted_pose<T: Scalar>(instrument: &dyn Instrument<T>, time: f64) -> ToolPose {
-    instrument.mount().pose(instrument.path().at(time), time)
+fn scripted_pose<T: Scalar>(instrument: &dyn Instrument<T>, time: f64, trocar: Option<Vec3<f64>>) -> ToolPose {
+    instrument.mount().pose(instrument.path().at(time), time, trocar)
 }
 
-/// Where a tool is at a share of its step, and its trigger: on its script if it was on it before, straight to the goal otherwise.
+/// Where a tool is at a share of its step, and its trigger: on its script if it was on it before, straight to the goal otherwise; through
+/// its trocar all the time, unless that is another than in the step before.
 fn place<T: Scalar>(
     instrument: &dyn Instrument<T>,
     start: &ToolState,
@@ -334,9 +358,11 @@ fn place<T: Scalar>(
     if share == 1.0 {
         return (goal.pose, goal.trigger);
     }
-    if start.hand.is_none() && start.pose == scripted_pose(instrument, span.from) {
-        return (scripted_pose(instrument, span.from + (span.to - span.from) * share), trigger);
+    let trocar = start.trocar;
+    if start.hand.is_none() && start.pose == scripted_pose(instrument, span.from, trocar) {
+        return (scripted_pose(instrument, span.from + (span.to - span.from) * share, trocar), trigger);
     }
     let pose = start.pose.towards(&goal.pose, share);
-    (instrument.mount().guide(pose), trigger)
+    let turns = trocar.is_some() && start.pose.through(trocar) != start.pose;
+    (if turns { pose } else { pose.through(trocar) }, trigger)
 }

@@ -10,5 +10,6 @@ mod kinds;
 mod support;
 mod thin;
 mod tied;
+mod trocar;
 mod undo;
 mod weight;
