@@ -5,10 +5,14 @@
 //! * hold: F_n;
 //! * in time: F_n + (F_n − F_{n−1}) (t − t_n)/(t_n − t_{n−1});
 //! * in position: F_n + (F_n − F_{n−1}) ((P − P_n)·(P_n − P_{n−1}))/|P_n − P_{n−1}|²;
-//! * linearised: F_n − K (P − P_n).
+//! * linearised: F_n − K (P − P_n), where K says along the last way what the samples said.
 //!
 //! Source of the first three: Picinbono, Lombardo, *Extrapolation: a solution for force feedback?*, 1999/2000. Their error over a
 //! hand that moves smoothly: of hold ∝ Δt, of the others ∝ Δt², of position none where tissue is linear and pulled along a line.
+//!
+//! A stiffness that comes with the samples is that of tissue at rest. A hand that moves feels inertia and damping as well: with
+//! that stiffness alone the error was ∝ Δt, six times that of a learnt one at 8 ms, measured on a liver (`validation/results/extrapolation`).
+//! So it is corrected along the last way, as a learnt one is, and says more than that across.
 
 use crate::{Contact, Matrix, Sample, SampleError, Vector};
 
@@ -21,8 +25,8 @@ pub enum Extrapolation {
     Time,
     /// As it has changed with place, along the last way of the tool; knows nothing of other directions.
     Position,
-    /// As the stiffness at the contact says, in all directions: that of the sample, or one learnt from the samples
-    /// (Broyden's update, Math. Comp. 19, 1965), which along the last way says what [`Extrapolation::Position`] says.
+    /// As the stiffness at the contact says, in all directions: that of the sample, or the one before it, corrected by the samples
+    /// (Broyden's update, Math. Comp. 19, 1965) so that along the last way it says what [`Extrapolation::Position`] says.
     #[default]
     Linearised,
     /// The sample itself: the tissue is stepped in every period of the channel. A sample that is not of this period counts as missing.
@@ -57,8 +61,8 @@ pub struct LocalModel {
     resolution: f64,
     last: Option<Sample>,
     before: Option<Sample>,
-    /// Learnt from the samples [N/m].
-    learnt: Matrix,
+    /// That of the samples, corrected by their forces, or learnt from these alone [N/m].
+    stiffness: Matrix,
 }
 
 impl LocalModel {
@@ -66,7 +70,7 @@ impl LocalModel {
     /// position; believes no stiffness above `stiffest` [N/m, > 0]; ways of the tool that are not longer than `resolution` [m, ≥ 0]
     /// teach it little.
     pub fn new(extrapolation: Extrapolation, reach: f64, stiffest: f64, resolution: f64) -> Self {
-        Self { extrapolation, reach, stiffest, resolution, last: None, before: None, learnt: Matrix::ZERO }
+        Self { extrapolation, reach, stiffest, resolution, last: None, before: None, stiffness: Matrix::ZERO }
     }
 
     /// The last sample.
@@ -92,16 +96,24 @@ impl LocalModel {
         Ok(())
     }
 
-    /// K ← K + (−ΔF − K d) dᵀ/|d|², so that K d = −ΔF along the last way d of the tool, and across it K is as before.
+    /// K ← K + (−ΔF − K d) dᵀ/|d|², so that K d = −ΔF along the last way d of the tool; across it K is that of the sample, or as before.
     fn learn(&mut self, sample: Sample) {
-        if sample.contact == Contact::Pressing && sample.force.squared_norm() <= 0.0 {
-            self.learnt = Matrix::ZERO;
+        let is_free = |sample: &Sample| sample.contact == Contact::Pressing && sample.force.squared_norm() <= 0.0;
+        if is_free(&sample) {
+            self.stiffness = Matrix::ZERO;
             return;
         }
+        if let Some(known) = sample.stiffness {
+            self.stiffness = self.believable(known);
+            // On the way in, a part of the way was free.
+            if self.before.as_ref().is_some_and(is_free) {
+                return;
+            }
+        }
         let Some((way, change)) = self.change() else { return };
-        let unknown = -(change + self.learnt * way);
-        self.learnt += unknown.outer(self.weighted(way));
-        self.learnt = self.believable(self.learnt);
+        let unknown = -(change + self.stiffness * way);
+        self.stiffness += unknown.outer(self.weighted(way));
+        self.stiffness = self.believable(self.stiffness);
     }
 
     /// From the last sample but one to the last: way [m] and change of force [N].
@@ -145,10 +157,7 @@ impl LocalModel {
                 let share = if slope > self.stiffest { self.stiffest / slope } else { 1.0 };
                 change * (share * away.dot(weighted).clamp(-self.reach, self.reach))
             }
-            (Extrapolation::Linearised, _, _) => {
-                let stiffness = last.stiffness.map_or(self.learnt, |known| self.believable(known));
-                -(stiffness * away)
-            }
+            (Extrapolation::Linearised, _, _) => -(self.stiffness * away),
             _ => Vector::ZERO,
         }
     }

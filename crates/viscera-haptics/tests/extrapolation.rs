@@ -79,6 +79,35 @@ fn hold_is_of_first_order_and_the_others_are_of_second() {
     }
 }
 
+/// Tissue that also resists being moved, by 4 N s/m: a stiffness of tissue at rest knows nothing of that, and by itself left an error
+/// of first order. On a bent way, what it knows of the directions across makes it better than what is learnt from the samples.
+#[test]
+fn a_stiffness_at_rest_is_corrected_for_a_hand_that_moves() {
+    let (spring, damping) = (Spring::new(4e4), 4.0);
+    let velocity = |time: f64| (hand(time + 1e-6) - hand(time - 1e-6)) / 2e-6;
+    let error = |interval: u32, knows_slope: bool| {
+        let (mut model, mut squares) = (model(Extrapolation::Linearised), 0.0);
+        for tick in 0..3200 {
+            let time = f64::from(tick) * 1e-3;
+            let resistance = -velocity(time) * damping;
+            if tick % interval == 0 {
+                let sample = spring.sample(time, hand(time), knows_slope);
+                model.push(Sample { force: sample.force + resistance, ..sample }).unwrap();
+            }
+            if tick >= 800 {
+                let force = model.force(time, hand(time)).unwrap();
+                squares += (force - spring.force(hand(time)) - resistance).squared_norm();
+            }
+        }
+        squares.sqrt()
+    };
+    for (coarse, fine) in [(32, 16), (16, 8)] {
+        let order = (error(coarse, true) / error(fine, true)).log2();
+        assert!((order - 2.0).abs() < 0.25, "{order}");
+        assert!(error(fine, true) < error(fine, false), "{} and {}", error(fine, true), error(fine, false));
+    }
+}
+
 /// Along a line it goes with the square of the interval too; on a bent way it knows nothing of what lies across.
 #[test]
 fn position_extrapolation_is_of_second_order_along_a_line() {

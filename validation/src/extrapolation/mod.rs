@@ -231,7 +231,8 @@ impl Extrapolations {
         ));
         report = report.text(
             "What is probed is the stiffness of tissue that has come to rest with the hand; a hand that moves feels inertia and damping as \
-             well, which is why its error is of first order here. What is learnt from the samples, along the way of the hand, has them in it.",
+             well. Along the way of the hand the samples have them in them, and what is learnt or probed says what they say; across it, what is \
+             learnt says what it did before, and what is probed the stiffness at rest.",
         );
         for (samples, name) in [(Samples::Exact, "exact"), (Samples::Late, "late"), (Samples::Coarse, "coarse")] {
             let intervals: Vec<u32> = self.of(samples, Method::Hold).map(|row| row.interval).collect();
