@@ -22,7 +22,7 @@ import { chooseTransport } from './engine/choose';
 import { SessionClient } from './engine/session';
 import { handleKeys } from './handling/keyboard';
 import { PointerHandling } from './handling/pointer';
-import { mannerOf, Tools } from './handling/tools';
+import { Tools } from './handling/tools';
 import { exposeState } from './hook';
 import { ParameterPanel } from './panel/parameters';
 import { ShownPanel } from './panel/shown';
@@ -45,8 +45,8 @@ async function main(): Promise<void> {
     const others = tools.list.filter((tool) => tool !== tools.chosen);
     if (session.scene)
       hint.show(
-        tools.chosen && mannerOf(tools.chosen),
-        others.map((tool) => [mannerOf(tool), tool.name] as const),
+        tools.chosen?.manner,
+        others.map(({ manner, name }) => [manner, name] as const),
       );
   });
   const pointer = new PointerHandling(view, tools, () => hint.dismiss());

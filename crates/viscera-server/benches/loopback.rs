@@ -122,7 +122,11 @@ async fn measure_latency(socket: &mut Socket) -> Duration {
         trigger: 0.0,
         stamp: None,
     };
-    say(socket, Command::AddInstrument { kind: "probe".into(), tip: Some(tip(OFF)), direction: Some(direction) }).await;
+    say(
+        socket,
+        Command::AddInstrument { kind: "probe".into(), tip: Some(tip(OFF)), direction: Some(direction), trocar: None },
+    )
+    .await;
     let mut times = Vec::new();
     for turn in 0..POSES {
         say(socket, lead(OFF)).await;

@@ -8,11 +8,21 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::message::{Bytes, Command};
+use crate::message::size::fits;
+use crate::message::{Bytes, Command, LONGEST};
 use crate::simulation::tools::Tool;
 
 /// Grows with every change of what is written.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
+/// The oldest format that is read: it knew no trocars.
+const OLDEST: u32 = 2;
+/// The longest recording [steps]: an hour at 100 steps a second.
+pub(crate) const MOST_STEPS: u64 = 360_000;
+/// The most that is done in one: in every step of that hour something, and more.
+pub(crate) const MOST_EVENTS: usize = 400_000;
+/// The most values in the recording, in its lists, in what they list, and in what that consists of: 256 bodies in a mark, and nothing else
+/// than numbers and names in a command.
+const WIDEST: [u64; 6] = [32, MOST_EVENTS as u64, 16, 256, 16, 16];
 /// Steps between marks.
 pub(crate) const INTERVAL: u64 = 50;
 /// By how much numbers may differ from those recorded on another processor, over the largest of them. Contact and cuts multiply
@@ -104,9 +114,37 @@ pub enum RecordingError {
     /// They are something else, or damaged.
     #[error("this is no recording of Viscera, or it is damaged: {0}")]
     Unreadable(String),
+    /// It is longer than one can be that is made here: nothing of it was kept.
+    #[error("the recording has {bytes} bytes, and at most {LONGEST} are read: record less")]
+    TooLong {
+        /// Its length.
+        bytes: usize,
+    },
+    /// It breaks off, or promises more than a recording has: nothing of it was kept.
+    #[error(
+        "this is no recording of Viscera, or it is damaged: its {bytes} bytes break off, or promise more than they have"
+    )]
+    Unsound {
+        /// Its length.
+        bytes: usize,
+    },
+    /// It asks for what is never recorded.
+    #[error("the recording is not of this program: at step {at} it has `{command}`, which is never recorded")]
+    Foreign {
+        /// At which step.
+        at: u64,
+        /// The `type` of the command.
+        command: &'static str,
+    },
+    /// It has more steps than one can have that is made here.
+    #[error("the recording has {steps} steps, and at most {MOST_STEPS} are played: it is damaged")]
+    TooManySteps {
+        /// How many.
+        steps: u64,
+    },
     /// They are of another version.
     #[error(
-        "the recording has format {found}, and this program reads format {FORMAT}: record it again, or take the program it is of"
+        "the recording has format {found}, and this program reads formats {OLDEST} to {FORMAT}: record it again, or take the program it is of"
     )]
     OtherFormat {
         /// Its format.
@@ -133,7 +171,8 @@ impl Recording {
         }
     }
 
-    /// Reads one.
+    /// Reads one. Bytes are never trusted: what they promise is held against what is there before anything is kept, and what is
+    /// kept takes at most some times their length.
     ///
     /// # Errors
     /// [`RecordingError`].
@@ -142,12 +181,25 @@ impl Recording {
         struct Head {
             format: u32,
         }
+        if bytes.len() > LONGEST {
+            return Err(RecordingError::TooLong { bytes: bytes.len() });
+        }
+        if !fits(&WIDEST, bytes) {
+            return Err(RecordingError::Unsound { bytes: bytes.len() });
+        }
         let unreadable = |error: rmp_serde::decode::Error| RecordingError::Unreadable(error.to_string());
         let Head { format } = rmp_serde::from_slice(bytes).map_err(unreadable)?;
-        if format != FORMAT {
+        if !(OLDEST..=FORMAT).contains(&format) {
             return Err(RecordingError::OtherFormat { found: format });
         }
-        rmp_serde::from_slice(bytes).map_err(unreadable)
+        let recording: Self = rmp_serde::from_slice(bytes).map_err(unreadable)?;
+        if recording.steps > MOST_STEPS {
+            return Err(RecordingError::TooManySteps { steps: recording.steps });
+        }
+        match recording.events.iter().find(|event| !event.command.is_recorded()) {
+            Some(Event { at, command }) => Err(RecordingError::Foreign { at: *at, command: command.name() }),
+            None => Ok(recording),
+        }
     }
 
     /// Its bytes.

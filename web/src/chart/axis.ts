@@ -1,6 +1,12 @@
+/** What share of the other side is too little to be shown. */
+const SLIVER = 0.02;
+
 /** The span of a chart that holds all values, begins and ends at round numbers, and shows zero where zero is near. */
 export function roundSpan(low: number, high: number): [low: number, high: number] {
   if (!Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
+  // What is a sliver beyond zero, as energies are by rounding, opens no step there.
+  if (low < 0 && -low < SLIVER * high) low = 0;
+  if (high > 0 && high < -SLIVER * low) high = 0;
   // Zero belongs to it where it is as near as the values are from each other.
   const width = high - low;
   let from = low > 0 && low <= width ? 0 : low;

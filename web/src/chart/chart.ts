@@ -6,6 +6,9 @@ import type { Series } from './series';
 /** Seconds that a chart shows. */
 export const WINDOW = 20;
 
+/** How dark it is between a line and zero. */
+const SHADE = 0.12;
+
 export interface Curve {
   readonly name: string;
   readonly series: Series;
@@ -41,6 +44,7 @@ export class Chart {
         { className: 'plot' },
         this.canvas,
         element('span', { className: 'limits' }, this.top, this.bottom),
+        element('span', { className: 'limit since' }, `−${WINDOW} s`),
       ),
     );
   }
@@ -91,17 +95,25 @@ export class Chart {
       context.stroke();
     }
     this.curves.forEach(({ series }, index) => {
-      context.strokeStyle = style.getPropertyValue(`--chart-${index + 1}`);
+      const colour = style.getPropertyValue(`--chart-${index + 1}`);
+      context.strokeStyle = context.fillStyle = colour;
       context.lineWidth = 1.5 * ratio;
       context.lineJoin = 'round';
       context.beginPath();
-      let begun = false;
+      let [first, last]: (number | undefined)[] = [];
       for (const [time, value] of series.after(now - WINDOW)) {
-        if (begun) context.lineTo(x(time), y(value));
-        else context.moveTo(x(time), y(value));
-        begun = true;
+        if (first === undefined) context.moveTo(x(time), y(value));
+        else context.lineTo(x(time), y(value));
+        first ??= x(time);
+        last = x(time);
       }
       context.stroke();
+      if (first === undefined || last === undefined || from > 0 || to < 0) return;
+      context.lineTo(last, y(0));
+      context.lineTo(first, y(0));
+      context.globalAlpha = SHADE;
+      context.fill();
+      context.globalAlpha = 1;
     });
   }
 }

@@ -10,6 +10,7 @@ const POINTER: readonly (readonly [string, string])[] = [
     'moves it in depth; on a tablet a second finger, or the strip at the left',
   ],
   ['Press on a tool', 'takes it in hand and moves it without working'],
+  ['Press on the collar of a shaft', 'moves where it enters, in the wall of the belly'],
   ['Drag beside the tissue, right button', 'turns the view; with Shift or two fingers moves it'],
   ['Wheel, two fingers', 'zooms'],
   ['Drop a file', 'opens a mesh, a scene, a recording'],

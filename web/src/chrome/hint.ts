@@ -1,12 +1,14 @@
 import { element } from '../dom';
-import type { Manner } from '../handling/tools';
+import type { SceneInstrument } from '../engine/messages';
 import { icon, type IconName } from './icons';
 import { remember, remembered } from './theme';
+
+type Manner = SceneInstrument['manner'];
 
 const KEY = 'viscera.hint';
 
 const WORK: Record<Manner, readonly [icon: IconName, text: string]> = {
-  grasp: ['grasp', 'Press on the tissue to grasp it, and drag to pull.'],
+  hold: ['grasp', 'Press on the tissue to grasp it, and drag to pull.'],
   burn: ['burn', 'Press on the tissue to burn it, and drag along the cut.'],
   push: ['push', 'Press on the tissue to push it in, and drag to slide.'],
 };

@@ -1,13 +1,20 @@
 import { element, freshId, say } from '../dom';
 import type { InstrumentKind, SceneInstrument } from '../engine/messages';
 import type { SessionClient } from '../engine/session';
-import { mannerOf, type Tools } from '../handling/tools';
+import type { Tools } from '../handling/tools';
 import { iconButton } from './button';
-import { icon } from './icons';
+import { icon, type IconName } from './icons';
 import { menuOn } from './menu';
 
 /** How far one pixel of the depth strip moves the tool: a part of its distance to the eye. */
 const DEPTH_PER_PIXEL = 0.002;
+
+/** The icons of what tools do. */
+export const MANNERS: Record<SceneInstrument['manner'], IconName> = {
+  hold: 'grasp',
+  burn: 'burn',
+  push: 'push',
+};
 
 /** The tools at the left: which there are, which is in hand, hold, and a strip for depth where there is no wheel. */
 export class ToolStrip {
@@ -20,6 +27,7 @@ export class ToolStrip {
     attributes: { role: 'radiogroup', 'aria-label': 'Tool in hand' },
   });
   private readonly hold: HTMLButtonElement;
+  private readonly entry: HTMLButtonElement;
   private readonly remove: HTMLButtonElement;
   private readonly session: SessionClient;
   private readonly tools: Tools;
@@ -41,12 +49,24 @@ export class ToolStrip {
       'Hold',
     );
     this.hold.addEventListener('click', () => tools.toggleTrigger());
+    this.entry = element(
+      'button',
+      {
+        type: 'button',
+        className: 'tool entry',
+        ariaPressed: 'false',
+        title: 'Lead its shaft through a point in the wall of the belly, which can be dragged (T)',
+      },
+      icon('entry'),
+      'Entry',
+    );
+    this.entry.addEventListener('click', () => tools.toggleTrocar());
     this.remove = iconButton('remove', 'Take this tool away', () => {
       if (tools.chosen) tools.remove(tools.chosen.instrument);
     });
     this.remove.classList.add('remove');
     const depth = depthStrip(deepen);
-    this.node.append(this.list, add, this.hold, depth, this.remove);
+    this.node.append(this.list, add, this.hold, this.entry, depth, this.remove);
     this.node.append(
       menuOn(add, 'Bring in', () =>
         (session.catalogue?.instruments ?? []).map((kind) => ({
@@ -59,6 +79,7 @@ export class ToolStrip {
     session.on('catalogue', () => this.show());
     session.on('scene', () => this.show());
     session.on('role', () => this.show());
+    session.on('frame', () => (this.entry.ariaPressed = String(tools.trocar !== undefined)));
   }
 
   show(): void {
@@ -75,8 +96,8 @@ export class ToolStrip {
       );
     }
     const trigger = this.kindOf(chosen)?.trigger ?? '';
-    this.hold.hidden = this.remove.hidden = !chosen;
-    this.hold.disabled = this.remove.disabled = !mayDrive;
+    this.hold.hidden = this.entry.hidden = this.remove.hidden = !chosen;
+    this.hold.disabled = this.entry.disabled = this.remove.disabled = !mayDrive;
     this.hold.ariaPressed = String(latched);
     this.hold.title =
       trigger === '' ? 'This tool has no trigger' : `Keep on without pressing: ${trigger} (space)`;
@@ -89,7 +110,6 @@ export class ToolStrip {
 
   private button(instrument: SceneInstrument, index: number): HTMLButtonElement {
     const kind = this.kindOf(instrument);
-    const manner = mannerOf(instrument);
     const label = element('span', { id: freshId('tool') });
     say(label, capital(instrument.name || kind?.title || instrument.kind));
     const button = element(
@@ -101,7 +121,7 @@ export class ToolStrip {
         data: { instrument: String(instrument.instrument) },
         attributes: { role: 'radio', 'aria-checked': 'false' },
       },
-      icon(manner),
+      icon(MANNERS[instrument.manner]),
       label,
     );
     button.addEventListener('click', () => this.tools.choose(instrument.instrument));

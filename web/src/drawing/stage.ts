@@ -78,8 +78,10 @@ export class Stage {
     const organs = this.bodies.filter((body) => body instanceof Organ);
     const tools = [...this.instruments.values()];
     const roots = [...organs.map((organ) => organ.mesh), ...tools.map((tool) => tool.group)];
-    const first = caster.intersectObjects(roots, true)[0];
+    const first = caster.intersectObjects(roots, true).find(({ object }) => isShown(object));
     if (!first) return undefined;
+    const trocar: unknown = first.object.userData['trocar'];
+    if (typeof trocar === 'number') return { kind: 'trocar', instrument: trocar, point: first.point };
     const instrument: unknown = first.object.userData['instrument'];
     if (typeof instrument === 'number') return { kind: 'instrument', instrument, point: first.point };
     const body = this.bodies.findIndex((other) => other instanceof Organ && other.mesh === first.object);
@@ -127,7 +129,6 @@ export class Stage {
         continue;
       }
       this.group.remove(drawn.group);
-      if (drawn.fixture) this.group.remove(drawn.fixture);
       drawn.dispose();
       this.instruments.delete(number);
     }
@@ -136,9 +137,13 @@ export class Stage {
       drawn.setChosen(number === this.chosen);
       this.instruments.set(number, drawn);
       this.group.add(drawn.group);
-      if (drawn.fixture) this.group.add(drawn.fixture);
     }
   }
+}
+
+/** What is only there to be pressed is not drawn itself, and what it belongs to is. */
+function isShown(object: THREE.Object3D): boolean {
+  return object.parent !== null && object.parent.visible;
 }
 
 function sameShape(

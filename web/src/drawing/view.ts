@@ -8,7 +8,7 @@ import { Stage } from './stage';
 /** What lies under the pointer. */
 export type Hit =
   | { kind: 'tissue'; body: number; point: THREE.Vector3; normal: THREE.Vector3 }
-  | { kind: 'instrument'; instrument: number; point: THREE.Vector3 };
+  | { kind: 'instrument' | 'trocar'; instrument: number; point: THREE.Vector3 };
 
 /** What tools at the left and charts below cover of the canvas [CSS pixels]. */
 const COVERED_LEFT = 60;

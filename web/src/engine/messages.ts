@@ -1,11 +1,14 @@
 /** What is said between the page and a session; `docs/protocol.md` says what each key means. SI units throughout. */
 
-export const PROTOCOL_VERSION = 1;
+export const PROTOCOL_VERSION = 2;
 /** The longest command that a session takes [bytes]. */
 export const LONGEST_COMMAND = 64 * 2 ** 20;
 
 export type Vector = [x: number, y: number, z: number];
 export type ParameterValue = number | string | boolean | Vector;
+
+/** The point that a shaft passes through [m]: this one, one that the session chooses, or none. */
+export type Trocar = Vector | boolean;
 
 // --- What the page says ------------------------------------------------------------------------------------------------
 
@@ -15,7 +18,8 @@ export type Command = { request?: number } & (
   | { type: 'open-text'; text: string; name?: string }
   | { type: 'open-mesh'; name: string; bytes: Uint8Array; unit?: 'm' | 'cm' | 'mm'; edge?: number }
   | { type: 'set'; key: string; value: ParameterValue }
-  | { type: 'add-instrument'; kind: string; tip?: Vector; direction?: Vector }
+  | { type: 'add-instrument'; kind: string; tip?: Vector; direction?: Vector; trocar?: Trocar }
+  | { type: 'set-trocar'; instrument: number; trocar: Trocar }
   | { type: 'remove-instrument'; instrument: number }
   | {
       type: 'move-instrument';
@@ -158,11 +162,19 @@ export interface SceneInstrument {
   kind: string;
   name: string;
   scripted: boolean;
-  shaft: { radius: number; length: number };
+  /** What pressing does with it. */
+  manner: 'hold' | 'burn' | 'push';
+  /** How far from its tip it takes hold or burns [m]. */
   reach: number;
-  jaw?: { length: number; radius: number; widest: number };
-  hook?: { length: number; radius: number };
-  trocar?: Vector;
+  /** Its rigid parts, in the order of a frame's; none where it touches nothing. */
+  parts: InstrumentPart[];
+}
+
+/** A rod with round ends, `length` [m] between the middles of them. */
+export interface InstrumentPart {
+  kind: 'shaft' | 'jaw';
+  radius: number;
+  length: number;
 }
 
 export interface Scene {
@@ -206,8 +218,9 @@ export interface FrameInstrument {
   tip: Vector;
   direction: Vector;
   roll: number;
+  /** The point that its shaft passes through [m]. */
+  trocar?: Vector;
   trigger: number;
-  opening: number;
   active: boolean;
   holds: boolean;
   force: Vector;

@@ -16,11 +16,31 @@ export class Hand {
   readonly pose: Pose;
   private goals: Goal[] = [];
   private readonly speed: number;
+  private readonly within: number;
+  private trocar: Vector3 | undefined;
 
-  /** `speed`: how fast the tip goes at most [m/s]. */
-  constructor(pose: Pose, speed: number) {
+  /** `speed`: how fast the tip goes at most [m/s]. `within`: how far inside of its trocar it stays [m]. */
+  constructor(pose: Pose, speed: number, within = 0) {
     this.pose = pose;
     this.speed = speed;
+    this.within = within;
+  }
+
+  /** The point that the shaft passes through: the tip stays on its own side of it, as a tool that is pulled out would turn round. */
+  enterThrough(trocar: Vector3 | undefined): void {
+    this.trocar = trocar;
+  }
+
+  /** The place that is meant, or the nearest on the tool's side of its trocar. */
+  private inside(tip: Vector3): Vector3 {
+    if (!this.trocar) return tip;
+    const inwards = this.pose.tip.clone().sub(this.trocar).normalize();
+    const aside = tip.clone().sub(this.trocar);
+    const depth = aside.dot(inwards);
+    if (depth >= this.within) return tip;
+    // Not farther to the side than within: along the wall, a shaft would lie in it.
+    aside.addScaledVector(inwards, -depth).clampLength(0, this.within);
+    return tip.copy(this.trocar).addScaledVector(inwards, this.within).add(aside);
   }
 
   get arrived(): boolean {
@@ -31,11 +51,11 @@ export class Hand {
   approach(tip: Vector3, direction: Vector3, clearance: number, trigger: number): void {
     const heading = direction.clone().normalize();
     const here = this.pose.tip;
-    const above = tip.clone().addScaledVector(heading, -clearance);
+    const above = this.inside(tip.clone().addScaledVector(heading, -clearance));
     this.goals = [];
     if (here.distanceTo(tip) > clearance) {
       this.goals.push({
-        tip: here.clone().addScaledVector(this.pose.direction.clone().normalize(), -clearance),
+        tip: this.inside(here.clone().addScaledVector(this.pose.direction.clone().normalize(), -clearance)),
         trigger: 0,
       });
       this.goals.push({ tip: above, direction: heading, trigger: 0 });
@@ -45,7 +65,8 @@ export class Hand {
   }
 
   /** Straight on to `tip` with the trigger as it is. While an approach is under way, its end moves along. */
-  moveTo(tip: Vector3): void {
+  moveTo(wanted: Vector3): void {
+    const tip = this.inside(wanted.clone());
     const last = this.goals.at(-1);
     const before = this.goals.at(-2);
     if (last) last.tip.copy(tip);
@@ -63,7 +84,9 @@ export class Hand {
     this.pose.trigger = 0;
     const heading = this.pose.direction.clone().normalize();
     this.goals =
-      clearance > 0 ? [{ tip: this.pose.tip.clone().addScaledVector(heading, -clearance), trigger: 0 }] : [];
+      clearance > 0
+        ? [{ tip: this.inside(this.pose.tip.clone().addScaledVector(heading, -clearance)), trigger: 0 }]
+        : [];
   }
 
   setTrigger(trigger: number): void {

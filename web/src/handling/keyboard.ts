@@ -20,6 +20,8 @@ export const KEYS: readonly (readonly [keys: string, what: string])[] = [
   ['Arrows', 'move the tool across the view'],
   ['W / S, Page Up / Down', 'move it away, or towards you'],
   ['Q / E', 'turn it about its shaft'],
+  ['T', 'lead its shaft through the wall of the belly, or let it go'],
+  ['I J K L, U / O', 'move where it enters: up, left, down, right; away, or towards you'],
   ['Space', 'close or open the jaws, switch the current'],
   ['Alt', 'with any of these: finely'],
   ['1 … 9', 'choose a tool'],
@@ -54,6 +56,12 @@ function moveTool(event: KeyboardEvent, view: View, tools: Tools, radius: number
     tools.roll(roll * TURN * (event.altKey ? FINE : 1));
     return true;
   }
+  if (event.code === 'KeyT') {
+    if (!event.repeat) tools.toggleTrocar();
+    return true;
+  }
+  const stride = STRIDE * radius * (event.altKey ? FINE : 1);
+  const across = (way: Vector3) => way.applyQuaternion(view.camera.quaternion).multiplyScalar(stride);
   const way = {
     ArrowLeft: new Vector3(-1, 0, 0),
     ArrowRight: new Vector3(1, 0, 0),
@@ -64,10 +72,17 @@ function moveTool(event: KeyboardEvent, view: View, tools: Tools, radius: number
     KeyW: new Vector3(0, 0, -1),
     KeyS: new Vector3(0, 0, 1),
   }[event.code];
-  if (!way) return false;
-  const stride = STRIDE * radius * (event.altKey ? FINE : 1);
-  tools.nudge(way.applyQuaternion(view.camera.quaternion).multiplyScalar(stride));
-  return true;
+  if (way) tools.nudge(across(way));
+  const entry = {
+    KeyJ: new Vector3(-1, 0, 0),
+    KeyL: new Vector3(1, 0, 0),
+    KeyI: new Vector3(0, 1, 0),
+    KeyK: new Vector3(0, -1, 0),
+    KeyU: new Vector3(0, 0, -1),
+    KeyO: new Vector3(0, 0, 1),
+  }[event.code];
+  if (entry && tools.trocar) tools.moveTrocar(tools.trocar.add(across(entry)));
+  return way !== undefined || entry !== undefined;
 }
 
 function moveCamera(event: KeyboardEvent, view: View): boolean {

@@ -11,18 +11,19 @@ const HOVER_PAUSE = 60;
 
 interface Drag {
   pointer: number;
-  /** From the point under the pointer to the tip [m], kept while dragging. */
+  /** From the point under the pointer to what is dragged [m], kept while dragging. */
   offset: Vector3;
   /** The plane of the drag goes through this point. */
   anchor: Vector3;
-  works: boolean;
+  /** What is dragged: a tool that works, one that is only moved, or where its shaft enters. */
+  what: 'work' | 'tool' | 'trocar';
   second?: { pointer: number; y: number };
 }
 
 /**
  * Mouse, pen and fingers. Pressed on tissue, the chosen tool goes there and works: jaws close, the hook burns, a probe pushes.
  * Dragging moves it in the plane that faces the eye, and the wheel or a second finger in depth. Pressed on a tool, it is taken
- * and moved without working. Everywhere else the camera turns.
+ * and moved without working; pressed where its shaft enters, that is moved. Everywhere else the camera turns.
  */
 export class PointerHandling {
   private drag: Drag | undefined;
@@ -62,19 +63,19 @@ export class PointerHandling {
       return;
     const hit = this.view.pick(event.clientX, event.clientY);
     if (!hit) return;
-    if (hit.kind === 'instrument') {
+    if (hit.kind !== 'tissue') {
       this.tools.choose(hit.instrument);
-      const tip = this.tools.lead();
-      if (tip) this.begin(event, hit.point, tip, false);
+      const place = hit.kind === 'trocar' ? this.tools.trocar : this.tools.lead();
+      if (place) this.begin(event, hit.point, place, hit.kind === 'trocar' ? 'trocar' : 'tool');
       return;
     }
     this.tools.begin(hit.point, hit.normal, this.heading(hit.point, hit.normal));
     const goal = this.tools.lead();
-    if (goal) this.begin(event, hit.point, goal, true);
+    if (goal) this.begin(event, hit.point, goal, 'work');
   }
 
-  private begin(event: PointerEvent, point: Vector3, tip: Vector3, works: boolean): void {
-    this.drag = { pointer: event.pointerId, offset: tip.clone().sub(point), anchor: point.clone(), works };
+  private begin(event: PointerEvent, point: Vector3, place: Vector3, what: Drag['what']): void {
+    this.drag = { pointer: event.pointerId, offset: place.clone().sub(point), anchor: point.clone(), what };
     this.view.controls.enabled = false;
     this.view.canvas.setPointerCapture(event.pointerId);
     this.view.canvas.dataset['cursor'] = 'working';
@@ -94,7 +95,13 @@ export class PointerHandling {
     const point = this.view.onViewPlane(event.clientX, event.clientY, drag.anchor);
     if (!point) return;
     drag.anchor.copy(point);
-    this.tools.moveTo(point.add(drag.offset));
+    this.moveTo(drag, point);
+  }
+
+  private moveTo(drag: Drag, point: Vector3): void {
+    const place = point.clone().add(drag.offset);
+    if (drag.what === 'trocar') this.tools.moveTrocar(place);
+    else this.tools.moveTo(place);
   }
 
   private up(event: PointerEvent): void {
@@ -108,7 +115,7 @@ export class PointerHandling {
     this.drag = undefined;
     this.view.controls.enabled = true;
     this.view.canvas.dataset['cursor'] = '';
-    if (drag.works) this.tools.end();
+    if (drag.what === 'work') this.tools.end();
   }
 
   private wheel(event: WheelEvent): void {
@@ -123,10 +130,12 @@ export class PointerHandling {
   deepen(part: number): void {
     const tip = this.tools.lead();
     if (!tip) return;
-    const sight = tip.clone().sub(this.view.camera.position);
-    const step = sight.clone().multiplyScalar(part);
-    this.drag?.anchor.add(step);
-    this.tools.nudge(step);
+    const { drag } = this;
+    const from = drag?.what === 'trocar' ? drag.anchor : tip;
+    const step = from.clone().sub(this.view.camera.position).multiplyScalar(part);
+    drag?.anchor.add(step);
+    if (drag?.what === 'trocar') this.moveTo(drag, drag.anchor);
+    else this.tools.nudge(step);
   }
 
   private hover(event: PointerEvent): void {

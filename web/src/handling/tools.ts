@@ -1,5 +1,5 @@
 import { Vector3 } from 'three';
-import type { FrameInstrument, SceneInstrument } from '../engine/messages';
+import type { FrameInstrument, InstrumentPart, SceneInstrument, Vector } from '../engine/messages';
 import type { SessionClient } from '../engine/session';
 import { Hand } from './hand';
 
@@ -13,12 +13,8 @@ const FAR = 3;
 /** Latencies that are kept for the numbers. */
 const KEPT = 200;
 
-/** What pressing does with an instrument, which follows from its shape. */
-export type Manner = 'grasp' | 'burn' | 'push';
-
-export function mannerOf(instrument: SceneInstrument): Manner {
-  return instrument.jaw ? 'grasp' : instrument.hook ? 'burn' : 'push';
-}
+/** How far within its trocar a tip stays, in radii of the scene: past it, a tool would turn round. */
+const WITHIN = 0.12;
 
 /** The instruments of the scene, which of them is in hand, and what the session is told about it. */
 export class Tools {
@@ -33,6 +29,8 @@ export class Tools {
   private last = performance.now();
   private stamp = 0;
   private wantsNewest = false;
+  /** Where trocars were that were taken away, to be given back there. */
+  private readonly trocars = new Map<string, Vector>();
 
   constructor(session: SessionClient, onChange: () => void) {
     this.session = session;
@@ -41,6 +39,7 @@ export class Tools {
     session.on('frame', (frame) => {
       const state = frame.instruments.find((instrument) => instrument.instrument === this.chosenNumber);
       this.lookAfter(state, frame.replay !== undefined);
+      this.hand?.enterThrough(state?.trocar && new Vector3(...state.trocar));
       if (state?.stamp !== undefined && state.stamp !== this.stamp) {
         this.stamp = state.stamp;
         this.latencies.push(performance.now() - state.stamp);
@@ -78,7 +77,36 @@ export class Tools {
 
   /** Brings another instrument of this kind in, and takes it in hand once it is there. */
   add(kind: string): void {
-    this.wantsNewest = this.session.send({ type: 'add-instrument', kind });
+    this.wantsNewest = this.session.send({ type: 'add-instrument', kind, trocar: this.throughWalls });
+  }
+
+  /** Whether tools come through the wall of the belly here: a new one comes as the others do. */
+  private get throughWalls(): boolean {
+    return this.session.frame?.instruments.some(({ trocar }) => trocar !== undefined) ?? false;
+  }
+
+  /** Gives the chosen tool a trocar, where it was or where the session has it, or takes it away. */
+  toggleTrocar(): void {
+    const { chosen, state } = this;
+    if (!chosen || !state || !this.mayDrive) return;
+    const key = `${this.session.scene?.name} ${this.session.scene?.epoch} ${chosen.instrument}`;
+    if (state.trocar) this.trocars.set(key, state.trocar);
+    const trocar = state.trocar ? false : (this.trocars.get(key) ?? true);
+    this.session.send({ type: 'set-trocar', instrument: chosen.instrument, trocar });
+    // The hand takes the tool as it is then.
+    this.hand = undefined;
+  }
+
+  /** Where the trocar of the chosen tool is. */
+  get trocar(): Vector3 | undefined {
+    const at = this.state?.trocar;
+    return at && new Vector3(...at);
+  }
+
+  moveTrocar(to: Vector3): void {
+    const { chosen } = this;
+    if (!chosen || !this.mayDrive || !this.trocar) return;
+    this.session.send({ type: 'set-trocar', instrument: chosen.instrument, trocar: to.toArray() });
   }
 
   remove(instrument: number): void {
@@ -94,7 +122,7 @@ export class Tools {
     if (!instrument && this.mayDrive) this.bringInAt(point, heading);
     const hand = this.inHand();
     if (!instrument || !hand) return;
-    const direction = instrument.trocar ? point.clone().sub(new Vector3(...instrument.trocar)) : heading;
+    const direction = this.trocar ? point.clone().sub(this.trocar) : heading;
     hand.approach(this.depthOf(instrument, point, normal, direction), direction, this.clearance, 1);
   }
 
@@ -104,7 +132,8 @@ export class Tools {
     const kind = (kinds.find(({ trigger }) => trigger !== '') ?? kinds[0])?.kind;
     if (kind === undefined) return;
     const tip = point.clone().addScaledVector(heading, -this.clearance).toArray();
-    this.wantsNewest = this.session.send({ type: 'add-instrument', kind, tip, direction: heading.toArray() });
+    const direction = heading.toArray();
+    this.wantsNewest = this.session.send({ type: 'add-instrument', kind, tip, direction });
   }
 
   /** Takes the tool as it is, to move it without working. */
@@ -120,7 +149,7 @@ export class Tools {
   end(): void {
     const instrument = this.chosen;
     if (!instrument || !this.hand || this.latched) return;
-    this.hand.release(mannerOf(instrument) === 'grasp' ? 0 : 0.3 * this.clearance);
+    this.hand.release(instrument.manner === 'hold' ? 0 : 0.3 * this.clearance);
     this.say(this.hand);
   }
 
@@ -167,16 +196,17 @@ export class Tools {
   /** How deep work goes: jaws enclose what they take, a hook sinks in, a probe presses. */
   private depthOf(instrument: SceneInstrument, point: Vector3, normal: Vector3, direction: Vector3): Vector3 {
     const radius = this.session.scene?.radius ?? 1;
-    const manner = mannerOf(instrument);
+    const { manner, parts, reach } = instrument;
+    const of = (kind: InstrumentPart['kind']) => parts.find((part) => part.kind === kind);
     const depth =
-      manner === 'grasp'
-        ? 0.35 * (instrument.jaw?.length ?? 0)
+      manner === 'hold'
+        ? 0.35 * (of('jaw')?.length ?? reach)
         : manner === 'burn'
-          ? instrument.shaft.radius
+          ? (of('shaft')?.radius ?? 0.5 * reach)
           : 0.14 * radius;
     const tip = point.clone().addScaledVector(direction.clone().normalize(), depth);
     // A trocar may lead jaws along the surface: they would slide over it and close on nothing.
-    return manner === 'grasp' ? tip.addScaledVector(normal, -depth) : tip;
+    return manner === 'hold' ? tip.addScaledVector(normal, -depth) : tip;
   }
 
   /** Takes the hand off a tool that was put elsewhere: by a replay, a kept state, another scene. */
@@ -194,7 +224,9 @@ export class Tools {
     if (!this.hand && state) {
       const { tip, direction, roll, trigger } = state;
       const pose = { tip: new Vector3(...tip), direction: new Vector3(...direction), roll, trigger };
-      this.hand = new Hand(pose, SPEED * (this.session.scene?.radius ?? 1));
+      const radius = this.session.scene?.radius ?? 1;
+      this.hand = new Hand(pose, SPEED * radius, WITHIN * radius);
+      this.hand.enterThrough(this.trocar);
     }
     return this.hand;
   }

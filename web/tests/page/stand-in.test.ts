@@ -159,6 +159,63 @@ test.describe('with a stand-in for the session', () => {
     await expect(page.getByRole('radio', { name: 'Cautery' })).toHaveAttribute('aria-checked', 'true');
   });
 
+  test('where a shaft enters can be given, dragged, moved by keys and taken away', async () => {
+    const last = () => session.heard.filter(({ type }) => type === 'set-trocar').at(-1);
+    const entry = page.getByRole('button', { name: 'Entry' });
+    await page.getByRole('radio', { name: 'Grasper' }).click();
+    await expect(entry).toHaveAttribute('aria-pressed', 'false');
+    await entry.click();
+    await expect.poll(last).toEqual({ type: 'set-trocar', instrument: 0, trocar: true });
+    await expect(entry).toHaveAttribute('aria-pressed', 'true');
+    await drawn(page);
+    // Where the stand-in puts it.
+    const at = await page.evaluate(() => window.viscera.state().project([0.02, 0.09, 0.12]));
+    expect(await page.evaluate(({ x, y }) => window.viscera.state().under(x, y), at)).toBe('trocar');
+    await page.mouse.move(at.x, at.y);
+    await page.mouse.down();
+    await page.mouse.move(at.x + 30, at.y, { steps: 3 });
+    await page.mouse.up();
+    const dragged = last();
+    if (dragged?.type !== 'set-trocar' || !Array.isArray(dragged.trocar)) throw new Error('it was not moved');
+    expect(dragged.trocar[0] - 0.02).toBeGreaterThan(0.005);
+    // Keys move that of the tool in hand.
+    await page.getByRole('radio', { name: 'Cautery' }).click();
+    await page.locator('#view').focus();
+    await page.keyboard.press('i');
+    await expect.poll(() => last()).toMatchObject({ instrument: 1 });
+    await page.getByRole('radio', { name: 'Grasper' }).click();
+    await page.locator('#view').focus();
+    await page.keyboard.press('t');
+    await expect.poll(last).toEqual({ type: 'set-trocar', instrument: 0, trocar: false });
+    await expect(entry).toHaveAttribute('aria-pressed', 'false');
+  });
+
+  test('held upright, everything is within reach', async () => {
+    await page.setViewportSize({ width: 768, height: 1024 });
+    await drawn(page);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    expect(wide).toBe(0);
+    const cut = await page.evaluate(() =>
+      [...document.querySelectorAll('#bar button, #bar select, .tool, .chart .value, .chart figcaption')]
+        .filter((part) => part.checkVisibility())
+        .filter((part) => {
+          const { left, right } = part.getBoundingClientRect();
+          return left < 0 || right > innerWidth || part.scrollWidth > part.clientWidth + 1;
+        })
+        .map((part) => part.textContent || part.getAttribute('aria-label')),
+    );
+    expect(cut).toEqual([]);
+    await keep('upright');
+    // However low the window is, charts leave the tools free.
+    for (const size of [{ width: 768, height: 1024 }, { width: 800, height: 500 }, DESK]) {
+      await page.setViewportSize(size);
+      const [tools, charts] = await Promise.all(
+        ['.tools', '.charts'].map((part) => page.locator(part).boundingBox()),
+      );
+      expect(tools!.y + tools!.height).toBeLessThan(charts!.y);
+    }
+  });
+
   test('help shows every key, and escape closes it', async () => {
     await page.keyboard.press('h');
     await expect(page.getByRole('dialog')).toContainText('Shift + arrows');

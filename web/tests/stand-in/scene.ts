@@ -40,28 +40,36 @@ export const catalogue: Omit<Catalogue, 'type'> = {
 };
 
 export function sceneInstruments(): SceneInstrument[] {
-  const shaft = { radius: 0.0025, length: 0.3 };
+  const shaft = { kind: 'shaft', radius: 0.0025, length: 0.3 } as const;
+  const jaw = { kind: 'jaw', radius: 0.002, length: 0.02 } as const;
   return [
     {
       instrument: 0,
       kind: 'grasper',
       name: 'grasper',
       scripted: false,
-      shaft,
+      manner: 'hold',
       reach: 0.01,
-      jaw: { length: 0.02, radius: 0.002, widest: 0.7 },
+      parts: [shaft, jaw, jaw],
     },
     {
       instrument: 1,
       kind: 'cautery',
       name: 'cautery',
       scripted: false,
-      shaft,
+      manner: 'burn',
       reach: 0.005,
-      hook: { length: 0.006, radius: 0.0007 },
-      trocar: [0.06, 0.2, 0.11],
+      parts: [shaft],
     },
-    { instrument: 2, kind: 'probe', name: 'probe', scripted: false, shaft, reach: 0.0025 },
+    {
+      instrument: 2,
+      kind: 'probe',
+      name: 'probe',
+      scripted: false,
+      manner: 'push',
+      reach: 0.0025,
+      parts: [shaft],
+    },
   ];
 }
 

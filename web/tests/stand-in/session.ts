@@ -1,6 +1,11 @@
 import { decode, encode } from '@msgpack/msgpack';
 import type { WebSocketRoute } from '@playwright/test';
-import type { Command, FrameInstrument, SceneInstrument } from '../../src/engine/messages';
+import {
+  PROTOCOL_VERSION,
+  type Command,
+  type FrameInstrument,
+  type SceneInstrument,
+} from '../../src/engine/messages';
 import { blob, bytesOf } from './blob';
 import { catalogue, parameters, sceneInstruments } from './scene';
 
@@ -37,11 +42,11 @@ export class StandIn {
         direction,
         roll: 0.6,
         trigger: 0,
-        opening: 0.7,
         active: false,
         holds: false,
         force: [0, 0, 0],
         torque: [0, 0, 0],
+        ...(kind === 'cautery' ? { trocar: [0.06, 0.2, 0.11] } : {}),
       });
     }
   }
@@ -109,9 +114,15 @@ export class StandIn {
             roll,
             trigger,
             stamp,
-            opening: 0.7 * (1 - trigger),
             active: trigger > 0.5,
           });
+        break;
+      }
+      case 'set-trocar': {
+        const tool = this.tools.get(command.instrument);
+        if (!tool) break;
+        if (command.trocar === false) delete tool.trocar;
+        else tool.trocar = command.trocar === true ? [0.02, 0.09, 0.12] : command.trocar;
         break;
       }
     }
@@ -122,7 +133,7 @@ export class StandIn {
     const session = this.sessionNumber;
     this.say({
       type: 'welcome',
-      version: 1,
+      version: PROTOCOL_VERSION,
       program: 'stand-in',
       engine: 'native',
       session,
@@ -233,8 +244,24 @@ export class StandIn {
       pace: { stepsPerSecond: 100, realTime: 1, lag: 0 },
       bodies: this.ghost ? [body, { epoch, positions: bytesOf(rest) }] : [body],
       colouring: { by: this.colouring, unit, low, high },
-      instruments: [...this.tools.values()],
+      instruments: [...this.tools.values()].map((tool) => ({ ...tool, parts: bytesOf(partsOf(tool)) })),
       observables: this.ghost ? [observables, observables] : [observables],
     });
   }
+}
+
+/** The rods of a tool of the stand-in: shaft, and for the first of them two jaws that close with the trigger. */
+function partsOf({ instrument, tip, direction, trocar, trigger }: FrameInstrument): Float32Array {
+  const way = trocar ? tip.map((x, axis) => x - trocar[axis]!) : direction;
+  const size = Math.hypot(...way);
+  const behind = (length: number, aside = 0) =>
+    tip.map((x, axis) => x - (length * way[axis]!) / size + (axis === 0 ? aside : 0));
+  const jaws = instrument === 0 ? 0.02 : 0;
+  const shaft = [...behind(jaws + 0.3), ...behind(jaws), 0.0025];
+  const jaw = (side: number) => [
+    ...behind(jaws),
+    ...behind(0, side * (0.002 + 0.006 * (1 - trigger))),
+    0.002,
+  ];
+  return new Float32Array(jaws > 0 ? [...shaft, ...jaw(1), ...jaw(-1)] : shaft);
 }

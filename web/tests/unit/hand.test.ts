@@ -70,3 +70,24 @@ test('a tool that has to turn right round keeps a direction on the way', () => {
   finish(moving, ({ pose }) => expect(pose.direction.length()).toBeCloseTo(1, 9));
   expect(moving.pose.direction.y).toBeCloseTo(1, 9);
 });
+
+test('a tip stays on its own side of the trocar', () => {
+  const trocar = new Vector3(0, 0.3, 0);
+  const moving = new Hand({ tip: new Vector3(), direction: DOWN.clone(), roll: 0, trigger: 0 }, 1, 0.02);
+  moving.enterThrough(trocar);
+  // Pulled out by far, backed out by an approach and after work, led on from there: always below it.
+  const within = () => finish(moving, ({ pose }) => expect(pose.tip.y).toBeLessThan(0.3));
+  moving.moveTo(new Vector3(0.01, 0.9, 0));
+  within();
+  expect(moving.pose.tip.y).toBeCloseTo(0.28, 12);
+  moving.approach(new Vector3(0.1, 0, 0), DOWN, 0.25, 1);
+  within();
+  expect(moving.pose.tip.toArray()).toEqual([0.1, 0, 0]);
+  moving.release(0.5);
+  finish(moving, ({ pose }) => expect(pose.tip.distanceTo(trocar)).toBeGreaterThanOrEqual(0.02 - 1e-12));
+  // Without one it goes where it is led.
+  moving.enterThrough(undefined);
+  moving.moveTo(new Vector3(0, 0.9, 0));
+  finish(moving);
+  expect(moving.pose.tip.y).toBe(0.9);
+});

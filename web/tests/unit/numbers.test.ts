@@ -49,6 +49,8 @@ test('the span of a chart is round and holds all values', () => {
   expect(roundSpan(98, 101)).toEqual([98, 101]);
   expect(roundSpan(0.2, 0.9)).toEqual([0, 1]);
   expect(roundSpan(-0.3, 0.9)).toEqual([-0.5, 1]);
+  // An energy that is below zero by rounding has no axis there.
+  expect(roundSpan(-1e-5, 0.9)).toEqual([0, 1]);
   expect(roundSpan(5, 5)).toEqual([0, 6]);
   expect(roundSpan(0, 0)).toEqual([0, 1]);
   expect(roundSpan(Infinity, -Infinity)).toEqual([0, 1]);

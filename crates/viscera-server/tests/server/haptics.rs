@@ -139,7 +139,14 @@ fn the_device_wins_over_a_page_that_wants_its_instrument_and_the_page_hears_why(
             assert!(refusal.reason.contains("device") && refusal.request == Some(request), "{refusal:?}");
         }
         // Another instrument is the page's to lead.
-        visitor.say(Command::AddInstrument { kind: "probe".into(), tip: Some(tip), direction: Some(direction) }).await;
+        visitor
+            .say(Command::AddInstrument {
+                kind: "probe".into(),
+                tip: Some(tip),
+                direction: Some(direction),
+                trocar: None,
+            })
+            .await;
         let lead = Command::MoveInstrument {
             instrument: 1,
             tip: [0.02, 0.3, 0.1],

@@ -58,6 +58,16 @@ pub enum Command {
         /// From handle to tip; by default away from who looks.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         direction: Option<[f64; 3]>,
+        /// The point that its shaft passes through; by default none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        trocar: Option<Trocar>,
+    },
+    /// Leads the shaft of an instrument through a point, or lets it go.
+    SetTrocar {
+        /// Its number.
+        instrument: u32,
+        /// The point.
+        trocar: Trocar,
     },
     /// Takes an instrument away.
     RemoveInstrument {
@@ -138,6 +148,16 @@ fn one() -> u32 {
     1
 }
 
+/// The point that the shaft of an instrument passes through.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Trocar {
+    /// One that the session chooses above the bodies, or none.
+    Wanted(bool),
+    /// This one [m].
+    At([f64; 3]),
+}
+
 /// Unit of the coordinates of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MeshUnit {
@@ -165,9 +185,50 @@ pub enum Export {
 }
 
 impl Command {
+    /// Its `type`. Asked of the encoding, it would cost a mesh dropped on the page forty times its bytes.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Hello { .. } => "hello",
+            Self::OpenScene { .. } => "open-scene",
+            Self::OpenText { .. } => "open-text",
+            Self::OpenMesh { .. } => "open-mesh",
+            Self::Set { .. } => "set",
+            Self::AddInstrument { .. } => "add-instrument",
+            Self::SetTrocar { .. } => "set-trocar",
+            Self::RemoveInstrument { .. } => "remove-instrument",
+            Self::MoveInstrument { .. } => "move-instrument",
+            Self::Pause { .. } => "pause",
+            Self::Play { .. } => "play",
+            Self::Step { .. } => "step",
+            Self::Reset { .. } => "reset",
+            Self::TakeSnapshot { .. } => "take-snapshot",
+            Self::RestoreSnapshot { .. } => "restore-snapshot",
+            Self::Colour { .. } => "colour",
+            Self::Ghost { .. } => "ghost",
+            Self::StartRecording { .. } => "start-recording",
+            Self::StopRecording { .. } => "stop-recording",
+            Self::Replay { .. } => "replay",
+            Self::StopReplay { .. } => "stop-replay",
+            Self::Export { .. } => "export",
+        }
+    }
+
     /// Whether it may be as long as a mesh.
     pub(super) fn may_be_long(name: &str) -> bool {
         matches!(name, "open-mesh" | "open-text" | "replay")
+    }
+
+    /// Whether recordings have it: what hands do to the scene that was there when they began.
+    pub(crate) fn is_recorded(&self) -> bool {
+        matches!(
+            self,
+            Self::Set { .. }
+                | Self::AddInstrument { .. }
+                | Self::SetTrocar { .. }
+                | Self::RemoveInstrument { .. }
+                | Self::MoveInstrument { .. }
+                | Self::Reset {}
+        )
     }
 
     /// Whether it changes what is simulated: a replay does not bear that.

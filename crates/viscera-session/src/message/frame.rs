@@ -104,10 +104,11 @@ pub struct InstrumentFrame {
     pub direction: [f64; 3],
     /// About the direction [rad].
     pub roll: f64,
+    /// The point that its shaft passes through [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trocar: Option<[f64; 3]>,
     /// 0 open or off, 1 closed or on.
     pub trigger: f64,
-    /// Between the jaws [rad].
-    pub opening: f64,
     /// Whether jaws are closed, or the current is on.
     pub active: bool,
     /// Whether it holds tissue.

@@ -5,23 +5,24 @@ mod bulk;
 mod command;
 mod frame;
 mod scene;
-mod size;
+pub(crate) mod size;
 
 pub use answer::{Answer, Excerpt, FileMessage, Level, Notice, Purpose, Refusal, Role, RoleMessage, Welcome};
 pub use bulk::{Bytes, F32s, U32s};
-pub use command::{Command, Export, MeshUnit};
+pub use command::{Command, Export, MeshUnit, Trocar};
 pub use frame::{
     BodyFrame, ColourRange, FrameMessage, InstrumentFrame, Observables, Pace, RecordingState, ReplayState, RunState,
 };
 pub use scene::{
-    BodyEntry, Camera, Catalogue, Choice, ColouringEntry, Effect, Entry, InstrumentEntry, InstrumentShape, Jaw,
-    Parameter, ParameterKind, RecordingEntry, Rod, Scale, SceneEntry, SceneMessage, SnapshotEntry, SurfaceMessage,
+    BodyEntry, Camera, Catalogue, Choice, ColouringEntry, Effect, Entry, InstrumentEntry, InstrumentShape, Manner,
+    Parameter, ParameterKind, Part, PartKind, RecordingEntry, Scale, SceneEntry, SceneMessage, SnapshotEntry,
+    SurfaceMessage,
 };
 
 use serde::{Deserialize, Serialize};
 
 /// Version of the protocol.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// How many states can be kept.
 pub const SLOTS: usize = 8;
 /// The longest command [bytes].

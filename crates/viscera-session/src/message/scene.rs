@@ -165,41 +165,46 @@ pub struct InstrumentShape {
     pub name: String,
     /// Whether the scene moves it until a hand does.
     pub scripted: bool,
-    /// Its rod.
-    pub shaft: Rod,
+    /// What pressing does with it.
+    pub manner: Manner,
     /// How far from its tip it takes hold or burns [m].
     pub reach: f64,
-    /// Its jaws.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub jaw: Option<Jaw>,
-    /// Its hook.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub hook: Option<Rod>,
-    /// The point through which its shaft always passes [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub trocar: Option<[f64; 3]>,
+    /// Its rigid parts, in the order in which frames say where they are; none where it touches nothing.
+    pub parts: Vec<Part>,
 }
 
-/// A round rod.
+/// What pressing does with an instrument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Manner {
+    /// It takes hold.
+    Hold,
+    /// It burns.
+    Burn,
+    /// It pushes.
+    Push,
+}
+
+/// A rigid part of an instrument: a rod with round ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Rod {
+pub struct Part {
+    /// What it is.
+    pub kind: PartKind,
     /// [m]
     pub radius: f64,
-    /// [m]
+    /// Between the middles of its ends [m].
     pub length: f64,
 }
 
-/// Jaws.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Jaw {
-    /// Of one jaw [m].
-    pub length: f64,
-    /// Of one jaw [m].
-    pub radius: f64,
-    /// Between the jaws when they are open [rad].
-    pub widest: f64,
+/// What a part of an instrument is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PartKind {
+    /// The rod behind the tip.
+    Shaft,
+    /// One of those that hold.
+    Jaw,
 }
 
 /// Something that can be changed while it runs.

@@ -1,4 +1,5 @@
-//! How much is in a message, found before any of it is kept: a value of one byte takes forty in memory.
+//! How much is in a message or a file, found before any of it is kept: a value of one byte takes forty in memory, and one that
+//! promises four billion others takes room for some of them.
 
 /// Whether MessagePack has, or says that it has, more than `most` values; lists, maps, keys and what is in them all count. Takes no
 /// memory, whatever the bytes say. Those that break off are counted as far as they go.
@@ -21,6 +22,43 @@ pub(super) fn has_more_values_than(most: u64, bytes: &[u8]) -> bool {
         rest = usize::try_from(skipped).ok().and_then(|skipped| after.get(skipped..)).unwrap_or_default();
     }
     false
+}
+
+/// Whether MessagePack is whole, and lists and maps in it (of which keys and values count) have at most as many values as `widest` says:
+/// the outermost the first of them, what is in it the next, and so on; none lies deeper. Takes no memory.
+pub(crate) fn fits<const DEEPEST: usize>(widest: &[u64; DEEPEST], bytes: &[u8]) -> bool {
+    // Of each list that is being read, how many values are still to come; in all of them together.
+    let (mut rest, mut open, mut depth, mut to_come) = (bytes, [0; DEEPEST], 0, 1_u64);
+    while to_come > 0 {
+        while depth > 0 && open[depth - 1] == 0 {
+            depth -= 1;
+        }
+        if depth > 0 {
+            open[depth - 1] -= 1;
+        }
+        to_come -= 1;
+        let Some((&marker, after)) = rest.split_first() else { return false };
+        let (head, content) = content(marker, after);
+        let skipped = match content {
+            Content::Bytes(length) => head + length,
+            Content::Values(0) => head,
+            Content::Values(count) => {
+                if depth == DEEPEST || count > widest[depth] {
+                    return false;
+                }
+                open[depth] = count;
+                depth += 1;
+                to_come += count;
+                head
+            }
+        };
+        match usize::try_from(skipped).ok().and_then(|skipped| after.get(skipped..)) {
+            // A value has a byte at least.
+            Some(left) if to_come <= left.len() as u64 => rest = left,
+            _ => return false,
+        }
+    }
+    rest.is_empty()
 }
 
 /// What comes behind a marker and its length.

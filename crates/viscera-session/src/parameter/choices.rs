@@ -49,6 +49,7 @@ fn title(name: &str) -> String {
         "neo-hookean" => return "Neo-Hookean".into(),
         "stable-neo-hookean" => return "Stable neo-Hookean".into(),
         "total-lagrangian" => return "Total Lagrangian".into(),
+        "backward-euler" => return "Backward Euler".into(),
         "bdf2" => return "BDF2".into(),
         "newmark" => return "Newmark".into(),
         "energy-momentum" => return "Energy–momentum".into(),

@@ -5,13 +5,14 @@ use crate::dropped;
 use crate::export;
 use crate::library;
 use crate::message::{
-    Answer, Bytes, Command, Effect, Export, FileMessage, Level, Purpose, Refusal, RunState, SLOTS, VERSION, Value,
+    Answer, Bytes, Command, Effect, Export, FileMessage, Level, Purpose, Refusal, RunState, SLOTS, Trocar, VERSION,
+    Value,
 };
 use crate::parameter;
 use crate::recording::Recording;
 use crate::refuse;
 use crate::simulation::colour::Colouring;
-use crate::simulation::tools::Hand;
+use crate::simulation::tools::{self, Hand};
 use crate::simulation::{AnyWorld, Change, Play};
 
 /// The most steps that one command makes.
@@ -57,7 +58,10 @@ impl Session {
                 self.pending.push((key, value, request));
                 Ok(())
             }
-            Command::AddInstrument { kind, tip, direction } => self.add_instrument(kind, tip, direction),
+            Command::AddInstrument { kind, tip, direction, trocar } => {
+                self.add_instrument(kind, tip, direction, trocar)
+            }
+            Command::SetTrocar { instrument, trocar } => self.set_trocar(instrument, trocar),
             Command::RemoveInstrument { instrument } => {
                 self.play.remove_tool(instrument)?;
                 self.gallery.scene_changed();
@@ -155,6 +159,7 @@ impl Session {
         kind: String,
         tip: Option<[f64; 3]>,
         direction: Option<[f64; 3]>,
+        trocar: Option<Trocar>,
     ) -> Result<(), Box<Refusal>> {
         if self.play.tools.iter().filter(|tool| !tool.removed).count() >= MOST_INSTRUMENTS {
             let help = "take one away first";
@@ -167,10 +172,21 @@ impl Session {
             ));
         }
         let hand = self.in_front(tip, direction);
-        self.play.add_tool(&kind, &hand)?;
+        let trocar = trocar.and_then(|trocar| self.play.entry(trocar, hand.tip, None));
+        self.play.add_tool(&kind, &hand, trocar)?;
         self.gallery.scene_changed();
-        let (tip, direction) = (Some(hand.tip), Some(hand.direction));
-        self.record(|| Command::AddInstrument { kind, tip, direction });
+        let (tip, direction, trocar) = (Some(hand.tip), Some(hand.direction), trocar.map(Trocar::At));
+        self.record(|| Command::AddInstrument { kind, tip, direction, trocar });
+        Ok(())
+    }
+
+    fn set_trocar(&mut self, instrument: u32, trocar: Trocar) -> Result<(), Box<Refusal>> {
+        self.play.tool(instrument)?;
+        let tip = tools::tip(&self.play.world, instrument).to_array();
+        let trocar = self.play.entry(trocar, tip, Some(instrument));
+        self.play.set_trocar(instrument, trocar)?;
+        let trocar = trocar.map_or(Trocar::Wanted(false), Trocar::At);
+        self.record(|| Command::SetTrocar { instrument, trocar });
         Ok(())
     }
 

@@ -56,7 +56,9 @@ impl Session {
     pub(super) fn held_by_another(&mut self, command: &Command) -> Option<Box<Refusal>> {
         let in_hand = self.in_hand.as_mut()?;
         match command {
-            Command::MoveInstrument { instrument, .. } | Command::RemoveInstrument { instrument }
+            Command::MoveInstrument { instrument, .. }
+            | Command::SetTrocar { instrument, .. }
+            | Command::RemoveInstrument { instrument }
                 if *instrument == in_hand.instrument => {}
             _ => return None,
         }

@@ -14,7 +14,7 @@ use crate::catalogue::catalogue;
 use crate::clock::Clock;
 use crate::export::History;
 use crate::library;
-use crate::message::{Answer, Command, Level, Notice, Refusal, Request, RunState, SLOTS, Value};
+use crate::message::{Answer, Level, Notice, Refusal, Request, RunState, SLOTS, Value};
 use crate::refuse;
 use crate::simulation::colour::Colouring;
 use crate::simulation::{Kept, Play};
@@ -110,13 +110,13 @@ impl Session {
     /// Takes a command that was read already.
     pub fn handle(&mut self, Request { command, request }: Request) {
         self.last_request = request.or(self.last_request);
-        let name = name_of(&command);
+        let name = command.name();
         let done = match self.held_by_another(&command) {
             Some(refusal) => Err(refusal),
             None => self.carry_out(command, request),
         };
         if let Err(refusal) = done {
-            self.refuse(Refusal { command: name, request, ..*refusal });
+            self.refuse(Refusal { command: name.into(), request, ..*refusal });
         }
     }
 
@@ -183,12 +183,6 @@ impl Session {
             self.state = RunState::Paused;
         }
     }
-}
-
-/// The `type` of a command.
-fn name_of(command: &Command) -> String {
-    let value = serde_json::to_value(command).unwrap_or_default();
-    value["type"].as_str().unwrap_or_default().into()
 }
 
 /// A refusal of what a replay does not bear.

@@ -2,17 +2,14 @@
 
 use std::sync::Arc;
 
-use viscera_scene::file::InstrumentFile;
-
 use super::Session;
 use crate::export::Row;
 use crate::message::{
     Answer, BodyFrame, ColourRange, F32s, FrameMessage, InstrumentFrame, Observables, SceneMessage, SnapshotEntry,
 };
 use crate::parameter;
-use crate::simulation::Play;
 use crate::simulation::colour::Colouring;
-use crate::simulation::tools::{self, Tool};
+use crate::simulation::tools;
 
 /// Time between observations [s], which cost as much as a few steps.
 const BETWEEN_OBSERVATIONS: f64 = 0.05;
@@ -123,14 +120,6 @@ impl Gallery {
     }
 }
 
-/// The angle between open jaws that the scene describes [rad].
-fn widest(play: &Play, tool: &Tool) -> Option<f64> {
-    match play.file.instrument.get(&tool.name).filter(|_| tool.of_scene)? {
-        InstrumentFile::Grasper { jaws: Some(jaws), .. } => Some(jaws.opening.0),
-        _ => None,
-    }
-}
-
 impl Session {
     /// Makes the next picture even if nothing changes: somebody new looks on, and no picture is kept.
     pub fn look_again(&mut self) {
@@ -179,13 +168,7 @@ impl Session {
         let play = &self.play;
         let (centre, radius) = play.ball;
         let present = play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
-        let shape = |(number, tool)| {
-            let mut shape = tools::shape(&play.world, number as u32, tool, radius);
-            if let (Some(jaw), Some(widest)) = (&mut shape.jaw, widest(play, tool)) {
-                jaw.widest = widest;
-            }
-            shape
-        };
+        let shape = |(number, tool)| tools::shape(&play.world, number as u32, tool);
         let snapshot =
             |kept: &Option<crate::simulation::Kept>| kept.as_ref().map(|kept| SnapshotEntry { time: kept.time });
         SceneMessage {
@@ -211,11 +194,7 @@ impl Session {
 
     fn frame_message(&mut self) -> FrameMessage {
         let present = self.play.tools.iter().enumerate().filter(|(_, tool)| !tool.removed);
-        let frame = |(number, tool)| {
-            let frame = tools::frame(&self.play.world, number as u32, tool);
-            let opening = widest(&self.play, tool).map_or(frame.opening, |widest| widest * (1.0 - frame.trigger));
-            InstrumentFrame { opening, ..frame }
-        };
+        let frame = |(number, tool)| tools::frame(&self.play.world, number as u32, tool);
         let instruments: Vec<InstrumentFrame> = present.map(frame).collect();
         let observables = self.observe(&instruments);
         let by = self.colouring;

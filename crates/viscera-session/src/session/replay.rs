@@ -10,12 +10,12 @@ use viscera_scene::{Files, Scene};
 
 use super::Session;
 use crate::message::{Bytes, Command, Level, Purpose, Refusal, ReplayState, RunState};
-use crate::recording::{Agreement, BodyMark, Event, INTERVAL, Mark, Recording, processor};
+use crate::recording::{Agreement, BodyMark, Event, INTERVAL, MOST_EVENTS, MOST_STEPS, Mark, Recording, processor};
 use crate::refuse;
 use crate::simulation::{AnyWorld, Kept, Play};
 
-/// The longest recording [steps]: an hour at 100 steps a second.
-const MOST_STEPS: u64 = 360_000;
+/// The most that hands do before one step.
+const MOST_AT_ONCE: usize = 10_000;
 
 /// A recording that is being made.
 pub(super) struct Recorder {
@@ -41,10 +41,9 @@ impl Session {
     pub(super) fn record(&mut self, command: impl FnOnce() -> Command) {
         let Some(Recorder { recording, .. }) = &mut self.recorder else { return };
         let (at, command) = (recording.steps, command());
-        // Of the moves of one instrument before one step the last counts.
-        if let (Command::MoveInstrument { instrument, .. }, Some(last)) = (&command, recording.events.last_mut())
-            && let Command::MoveInstrument { instrument: before, .. } = &last.command
-            && (last.at, before) == (at, instrument)
+        // Of the moves of one instrument before one step the last counts, and so of its trocar.
+        if let Some(last) = recording.events.last_mut().filter(|last| last.at == at)
+            && replaces(&command, &last.command)
         {
             last.command = command;
             return;
@@ -83,7 +82,7 @@ impl Session {
         if recording.steps.is_multiple_of(INTERVAL) {
             recording.marks.push(mark(&self.play, recording.steps));
         }
-        if recording.steps == MOST_STEPS {
+        if recording.steps == MOST_STEPS || recording.events.len() + MOST_AT_ONCE > MOST_EVENTS {
             self.notify(Level::Warning, "the recording has reached its greatest length and ended", "");
             // It is there: it was taken a moment ago.
             let _ = self.stop_recording(None);
@@ -197,6 +196,16 @@ impl Session {
             (_, false) => format!("replayed {steps} steps, with a difference"),
         };
         self.notify(Level::Info, text, "");
+    }
+}
+
+/// Whether a command makes nothing of what is left of the one before it.
+fn replaces(command: &Command, before: &Command) -> bool {
+    use Command::{MoveInstrument, SetTrocar};
+    match (before, command) {
+        (MoveInstrument { instrument: before, .. }, MoveInstrument { instrument, .. })
+        | (SetTrocar { instrument: before, .. }, SetTrocar { instrument, .. }) => before == instrument,
+        _ => false,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod build;
 pub(crate) mod colour;
+mod entry;
 mod ghost;
 mod play;
 mod surface;

@@ -120,10 +120,10 @@ impl Play {
     }
 
     /// Brings an instrument in; gives its number.
-    pub(crate) fn add_tool(&mut self, kind: &str, hand: &Hand) -> Result<u32, Box<Refusal>> {
-        tools::add(&mut self.world, kind, self.ball.1, hand).map_err(refuse::because)?;
+    pub(crate) fn add_tool(&mut self, kind: &str, hand: &Hand, trocar: Option<[f64; 3]>) -> Result<u32, Box<Refusal>> {
+        tools::add(&mut self.world, kind, self.ball.1, hand, trocar).map_err(refuse::because)?;
         if let Some(ghost) = &mut self.ghost {
-            tools::add(&mut ghost.world, kind, self.ball.1, hand).map_err(refuse::because)?;
+            tools::add(&mut ghost.world, kind, self.ball.1, hand, trocar).map_err(refuse::because)?;
         }
         let number = self.tools.len() as u32;
         let name = format!("{kind} {}", number + 1);
@@ -161,7 +161,17 @@ impl Play {
         Ok(())
     }
 
-    fn tool(&self, instrument: u32) -> Result<(), Box<Refusal>> {
+    /// Leads the shaft of an instrument through a point [m], or lets it go.
+    pub(crate) fn set_trocar(&mut self, instrument: u32, trocar: Option<[f64; 3]>) -> Result<(), Box<Refusal>> {
+        self.tool(instrument)?;
+        tools::set_trocar(&mut self.world, instrument, trocar).map_err(refuse::because)?;
+        if let Some(ghost) = &mut self.ghost {
+            tools::set_trocar(&mut ghost.world, instrument, trocar).map_err(refuse::because)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn tool(&self, instrument: u32) -> Result<(), Box<Refusal>> {
         match self.tools.get(instrument as usize) {
             Some(tool) if !tool.removed => Ok(()),
             _ => Err(refuse::with_help(format!("there is no instrument {instrument}"), "`scene` lists them")),

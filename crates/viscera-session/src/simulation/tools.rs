@@ -9,7 +9,7 @@ use viscera::math::{Scalar, Vec3};
 use viscera::world::{BodyId, InstrumentId, World, WorldError};
 
 use super::world::{AnyWorld, with};
-use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Jaw, Refusal, Rod};
+use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Manner, Part, PartKind, Refusal};
 use crate::refuse;
 
 /// Radius of a scene [m] for which instruments have their real measures; much smaller and much larger ones get instruments in
@@ -91,7 +91,7 @@ pub(crate) fn match_slots(world: &mut AnyWorld, radius: f64, tools: &[Tool]) -> 
     for (number, tool) in tools.iter().enumerate() {
         let hand = Hand { tip: [0.0; 3], direction: [0.0, -1.0, 0.0], roll: 0.0, trigger: 0.0 };
         if !tool.of_scene {
-            add(world, &tool.kind, radius, &hand).map_err(refuse::because)?;
+            add(world, &tool.kind, radius, &hand, None).map_err(refuse::because)?;
         }
         if tool.removed {
             remove(world, number as u32).map_err(refuse::because)?;
@@ -100,8 +100,8 @@ pub(crate) fn match_slots(world: &mut AnyWorld, radius: f64, tools: &[Tool]) -> 
     Ok(())
 }
 
-/// Leads the instruments of a world that begins again to where hands hold them. Those that a hand brought in are there at once: on
-/// the way they would sweep up what is in between.
+/// Leads the instruments of a world that begins again to where hands hold them, through the trocars that they have. Those that a hand
+/// brought in are there at once: on the way they would sweep up what is in between.
 pub(crate) fn lead_as_before(
     world: &mut AnyWorld,
     radius: f64,
@@ -111,6 +111,7 @@ pub(crate) fn lead_as_before(
     for (number, tool) in tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
         let number = number as u32;
         let state = with!(before, before => *before.tool(id(number)));
+        set_trocar(world, number, state.trocar.map(Vec3::to_array)).map_err(refuse::because)?;
         let Some(hand) = state.hand else { continue };
         let hand = Hand {
             tip: hand.pose.tip.to_array(),
@@ -119,28 +120,42 @@ pub(crate) fn lead_as_before(
             trigger: hand.trigger,
         };
         if !tool.of_scene {
-            place(world, number, &tool.kind, radius, &hand).map_err(refuse::because)?;
+            place(world, number, &tool.kind, radius, &hand, state.trocar).map_err(refuse::because)?;
         }
         lead(world, number, radius, &hand).map_err(refuse::because)?;
     }
     Ok(())
 }
 
-/// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m].
-pub(crate) fn add(world: &mut AnyWorld, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+/// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m], its shaft through `trocar` [m]. It stays
+/// in the hand: on the path of a world that is built anew, it would be where that path begins.
+pub(crate) fn add(
+    world: &mut AnyWorld,
+    kind: &str,
+    radius: f64,
+    hand: &Hand,
+    trocar: Option<[f64; 3]>,
+) -> Result<(), String> {
     let kind = named(kind)?;
     with!(world, world => {
-        let instrument = instrument(kind, radius, hand);
-        world.add_instrument(instrument).map(|_| ())
+        let instrument = instrument(kind, radius, hand, trocar.map(Vec3::from));
+        world.add_instrument(instrument).and_then(|id| world.set_tool(id, hand.input(radius)))
     })
     .map_err(text)
 }
 
 /// Puts an instrument where the hand is, at once.
-fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand) -> Result<(), String> {
+fn place(
+    world: &mut AnyWorld,
+    number: u32,
+    kind: &str,
+    radius: f64,
+    hand: &Hand,
+    trocar: Option<Vec3<f64>>,
+) -> Result<(), String> {
     let kind = named(kind)?;
     with!(world, world => {
-        let instrument = instrument(kind, radius, hand);
+        let instrument = instrument(kind, radius, hand, trocar);
         world.replace_instrument(id(number), instrument)
     })
     .map_err(text)
@@ -149,6 +164,21 @@ fn place(world: &mut AnyWorld, number: u32, kind: &str, radius: f64, hand: &Hand
 /// Says where an instrument should be at the end of the next step, or go as fast as it may, among bodies within a ball of `radius` [m].
 pub(crate) fn lead(world: &mut AnyWorld, instrument: u32, radius: f64, hand: &Hand) -> Result<(), String> {
     with!(world, world => world.set_tool(id(instrument), hand.input(radius))).map_err(text)
+}
+
+/// Leads the shaft of an instrument through a point [m], or lets it go.
+pub(crate) fn set_trocar(world: &mut AnyWorld, instrument: u32, trocar: Option<[f64; 3]>) -> Result<(), String> {
+    with!(world, world => world.set_trocar(id(instrument), trocar.map(Vec3::from))).map_err(text)
+}
+
+/// The trocar of an instrument [m], where it has one.
+pub(crate) fn trocar(world: &AnyWorld, instrument: u32) -> Option<Vec3<f64>> {
+    with!(world, world => world.tool(id(instrument)).trocar)
+}
+
+/// Where the tip of an instrument is [m].
+pub(crate) fn tip(world: &AnyWorld, instrument: u32) -> Vec3<f64> {
+    with!(world, world => world.tool(id(instrument)).pose.tip)
 }
 
 pub(crate) fn remove(world: &mut AnyWorld, instrument: u32) -> Result<(), String> {
@@ -173,11 +203,21 @@ fn proportion(radius: f64) -> f64 {
     if (0.2..5.0).contains(&(radius / USUAL_RADIUS)) { 1.0 } else { radius / USUAL_RADIUS }
 }
 
-fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<dyn Instrument<T>> {
+/// Length of the shafts of instruments that are brought in [m].
+pub(crate) fn shaft_length(radius: f64) -> f64 {
+    0.3 * proportion(radius)
+}
+
+fn instrument<T: Scalar>(
+    kind: InstrumentKind,
+    radius: f64,
+    hand: &Hand,
+    trocar: Option<Vec3<f64>>,
+) -> Box<dyn Instrument<T>> {
     let size = proportion(radius);
     let path = Curve::constant(Vec3::from(hand.tip));
-    let mount = Mount { roll: hand.roll, ..Mount::along(hand.direction.into()) };
-    let shaft = Shaft { radius: 2.5e-3 * size, length: 0.3 * size };
+    let mount = Mount { roll: hand.roll, trocar, ..Mount::along(hand.direction.into()) };
+    let shaft = Shaft { radius: 2.5e-3 * size, length: shaft_length(radius) };
     match kind {
         InstrumentKind::Probe => Box::new(Probe { path, mount, shaft, ..Probe::default() }),
         InstrumentKind::Grasper => Box::new(Grasper {
@@ -197,30 +237,29 @@ fn instrument<T: Scalar>(kind: InstrumentKind, radius: f64, hand: &Hand) -> Box<
     }
 }
 
-pub(crate) fn shape(world: &AnyWorld, instrument: u32, tool: &Tool, radius: f64) -> InstrumentShape {
-    let (parts, reach, trocar) = with!(world, world => {
+pub(crate) fn shape(world: &AnyWorld, instrument: u32, tool: &Tool) -> InstrumentShape {
+    let (parts, reach, jaws) = with!(world, world => {
         let this = world.instrument(id(instrument));
-        (world.tool_capsules(id(instrument)), this.reach(), this.mount().trocar)
+        (world.tool_capsules(id(instrument)), this.reach(), this.parts_that_hold())
     });
-    let size = proportion(radius);
-    let rod = |part: &Capsule| Rod { radius: part.radius, length: (part.to - part.from).norm() };
-    let shaft = parts.first().map_or(Rod { radius: 2.5e-3 * size, length: 0.3 * size }, rod);
-    let jaw = parts.get(1).map_or(Rod { radius: 0.6 * shaft.radius, length: reach.max(8.0 * shaft.radius) }, rod);
+    let first_jaw = parts.len() - jaws;
+    let part = |(number, part): (usize, &Capsule)| Part {
+        kind: if number < first_jaw { PartKind::Shaft } else { PartKind::Jaw },
+        radius: part.radius,
+        length: (part.to - part.from).norm(),
+    };
     InstrumentShape {
         instrument,
         kind: tool.kind.clone(),
         name: tool.name.clone(),
         scripted: tool.scripted,
-        shaft,
+        manner: match named(&tool.kind) {
+            Ok(InstrumentKind::Grasper) => Manner::Hold,
+            Ok(InstrumentKind::Cautery) => Manner::Burn,
+            Ok(InstrumentKind::Probe) | Err(_) => Manner::Push,
+        },
         reach,
-        jaw: (tool.kind == InstrumentKind::Grasper.name()).then_some(Jaw {
-            length: jaw.length,
-            radius: jaw.radius,
-            widest: Jaws::default().opening,
-        }),
-        hook: (tool.kind == InstrumentKind::Cautery.name())
-            .then_some(Rod { radius: 0.4 * shaft.radius, length: 2.0 * reach }),
-        trocar: trocar.map(Vec3::to_array),
+        parts: parts.iter().enumerate().map(part).collect(),
     }
 }
 
@@ -238,12 +277,12 @@ pub(crate) fn frame(world: &AnyWorld, instrument: u32, tool: &Tool) -> Instrumen
             tip: state.pose.tip.to_array(),
             direction: state.pose.direction.to_array(),
             roll: state.pose.roll,
+            trocar: state.trocar.map(Vec3::to_array),
             trigger: state.trigger,
-            opening: Jaws::default().opening * (1.0 - state.trigger),
             active: world.is_at_work(id),
             holds: state.held_nodes > 0,
-            force: (-state.force()).to_array(),
-            torque: (-state.torque()).to_array(),
+            force: (Vec3::ZERO - state.force()).to_array(),
+            torque: (Vec3::ZERO - state.torque()).to_array(),
             parts: F32s(parts.iter().flat_map(numbers).collect()),
             stamp: tool.stamp,
         }

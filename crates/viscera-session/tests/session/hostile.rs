@@ -106,10 +106,10 @@ fn tools_that_are_nowhere_are_refused() {
     page.say(Command::RemoveInstrument { instrument: probe });
     assert!(page.refusals()[0].reason.contains("no instrument 0"));
     for _ in 0..16 {
-        page.say(Command::AddInstrument { kind: "probe".into(), tip: None, direction: None });
+        page.say(Command::AddInstrument { kind: "probe".into(), tip: None, direction: None, trocar: None });
     }
     assert_eq!(page.refusals(), []);
-    page.say(Command::AddInstrument { kind: "probe".into(), tip: None, direction: None });
+    page.say(Command::AddInstrument { kind: "probe".into(), tip: None, direction: None, trocar: None });
     assert!(page.refusals()[0].reason.contains("16 instruments"));
 }
 

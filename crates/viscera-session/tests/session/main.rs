@@ -7,3 +7,4 @@ mod pictures;
 mod play;
 mod recordings;
 mod support;
+mod trocars;

@@ -24,8 +24,14 @@ fn commands() -> Vec<(&'static str, Request)> {
         ("set-text", plain(Command::Set { key: "integrator.kind".into(), value: Value::Text("newmark".into()) })),
         (
             "add-instrument",
-            plain(Command::AddInstrument { kind: "probe".into(), tip: None, direction: Some([0.0, -1.0, 0.5]) }),
+            plain(Command::AddInstrument {
+                kind: "probe".into(),
+                tip: None,
+                direction: Some([0.0, -1.0, 0.5]),
+                trocar: Some(Trocar::Wanted(true)),
+            }),
         ),
+        ("set-trocar", plain(Command::SetTrocar { instrument: 1, trocar: Trocar::At([0.0, 0.25, 0.125]) })),
         ("remove-instrument", plain(Command::RemoveInstrument { instrument: 3 })),
         (
             "move-instrument",
@@ -145,11 +151,12 @@ fn answers() -> Vec<(&'static str, Answer)> {
                     kind: "grasper".into(),
                     name: "grasper 1".into(),
                     scripted: false,
-                    shaft: Rod { radius: 0.0025, length: 0.3 },
+                    manner: Manner::Hold,
                     reach: 0.012,
-                    jaw: Some(Jaw { length: 0.02, radius: 0.0015, widest: 1.0 }),
-                    hook: None,
-                    trocar: Some([0.0, 0.3, 0.0]),
+                    parts: vec![
+                        Part { kind: PartKind::Shaft, radius: 0.0025, length: 0.3 },
+                        Part { kind: PartKind::Jaw, radius: 0.0015, length: 0.02 },
+                    ],
                 }],
                 parameters: vec![
                     parameter("body.liver.law.young", Value::Number(5000.0), number),
@@ -200,13 +207,13 @@ fn answers() -> Vec<(&'static str, Answer)> {
                     tip: [0.125, 0.25, 0.5],
                     direction: [0.0, -1.0, 0.0],
                     roll: 0.25,
+                    trocar: Some([0.0, 0.5, 0.0]),
                     trigger: 0.5,
-                    opening: 0.5,
                     active: true,
                     holds: true,
                     force: [0.0, -1.5, 0.0],
                     torque: [0.0, 0.0, 0.001],
-                    parts: F32s(vec![0.0, 0.5, 0.0, 0.0, 0.25, 0.0, 0.0025]),
+                    parts: F32s(vec![0.0, 0.5, 0.0, 0.0, 0.25, 0.0, 0.0025, 0.0, 0.25, 0.0, 0.0, 0.125, 0.0, 0.0015]),
                     stamp: Some(1234.5),
                 }],
                 observables: Some(vec![Observables {
@@ -286,7 +293,11 @@ fn messages_keep_their_bytes() {
 #[test]
 fn messages_come_back_as_they_went() {
     for (name, command) in commands() {
-        assert_eq!(Request::decode(&command.encode()).unwrap(), command, "{name}");
+        let bytes = command.encode();
+        assert_eq!(Request::decode(&bytes).unwrap(), command, "{name}");
+        let map = rmpv::decode::read_value(&mut &bytes[..]).unwrap();
+        let of_type = map.as_map().unwrap().iter().find(|(key, _)| key.as_str() == Some("type")).unwrap();
+        assert_eq!(of_type.1.as_str(), Some(command.command.name()));
     }
     for (name, answer) in answers() {
         assert_eq!(Answer::decode(&answer.encode()).unwrap(), answer, "{name}");

@@ -1,5 +1,5 @@
 use viscera_session::Seen;
-use viscera_session::message::{Answer, Command};
+use viscera_session::message::{Answer, Command, Manner, PartKind};
 
 use crate::support::{BAR, Page, hybrid_bar, light_bar};
 
@@ -138,24 +138,46 @@ fn kept_volumes_and_precomputed_parts_tell_their_error() {
     assert!(interface.is_some_and(|change| change > 0.0 && change.is_finite()), "{interface:?}");
 }
 
-/// Jaws are as wide as the scene says, and in proportion to the trigger.
+/// The angle between the jaws of a tool as a frame tells of them [rad].
+fn between_jaws(parts: &[f32]) -> f64 {
+    let rods: Vec<_> = parts.chunks_exact(7).collect();
+    let [.., one, other] = rods[..] else { panic!("it has no jaws: {parts:?}") };
+    let along = |rod: &[f32]| -> [f64; 3] { std::array::from_fn(|axis| f64::from(rod[3 + axis] - rod[axis])) };
+    let (one, other) = (along(one), along(other));
+    let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
+    (dot(one, other) / (dot(one, one) * dot(other, other)).sqrt()).acos()
+}
+
+/// What a page draws is what touches: a rod of the scene's measures, and jaws as wide as the scene says, in proportion to the trigger.
 #[test]
-fn jaws_open_as_wide_as_the_scene_says() {
+fn parts_are_told_as_they_touch() {
     let grasper = r#"
 [instrument.narrow]
 kind = "grasper"
 path = [0.02, 0.1, 0.06]
-jaws = { opening = 0.4 }
+jaws = { length = "20 mm", radius = "1.5 mm", opening = 0.4 }
+shaft = { radius = "3 mm", length = "25 cm" }
+
+[instrument.beam]
+kind = "cautery"
+path = [0.02, 0.2, 0.06]
 "#;
     let mut page = Page::open(&(light_bar() + grasper));
     page.step(1);
     let (shape, frame) = (page.scene().instruments[0].clone(), page.frame().instruments[0].clone());
-    assert_eq!(shape.jaw.map(|jaw| jaw.widest), Some(0.4));
-    assert_eq!((frame.trigger, frame.opening), (0.0, 0.4));
+    let kinds: Vec<PartKind> = shape.parts.iter().map(|part| part.kind).collect();
+    assert_eq!((shape.manner, kinds), (Manner::Hold, vec![PartKind::Shaft, PartKind::Jaw, PartKind::Jaw]));
+    assert_eq!((shape.parts[0].radius, frame.parts.0.len()), (0.003, 21));
+    assert!((shape.parts[0].length - 0.25).abs() < 1e-12);
+    // Jaws end a radius to the side of their hinge's lines, and so that they lie side by side when they are closed.
+    let aside = (1.5_f64 / 20.0).atan();
+    let open = between_jaws(&frame.parts.0);
+    assert!(open > 0.4 && open < 0.4 + 2.0 * aside, "{open} rad");
     page.lead(0, [0.02, 0.1, 0.06], 1.0);
     page.step(1);
-    let frame = page.frame().instruments[0].clone();
-    assert!((frame.opening - 0.4 * (1.0 - frame.trigger)).abs() < 1e-12 && frame.trigger > 0.0, "{frame:?}");
-    page.add("grasper", [0.06, 0.1, 0.06], [0.0, -1.0, 0.0]);
-    assert_eq!(page.scene().instruments[1].jaw.map(|jaw| jaw.widest), Some(1.0), "what a hand brings in is as usual");
+    let closed = between_jaws(&page.frame().instruments[0].parts.0);
+    assert!((closed - 2.0 * aside).abs() < 1e-5, "{closed} rad");
+    // One without a rod touches nothing, and has nothing to draw that would seem to.
+    let (shape, frame) = (&page.scene().instruments[1], &page.frame().instruments[1]);
+    assert_eq!((shape.manner, &shape.parts[..], &frame.parts.0[..]), (Manner::Burn, &[][..], &[][..]));
 }

@@ -1,6 +1,6 @@
 use viscera_session::library;
-use viscera_session::message::{Bytes, Command, FrameMessage, RunState};
-use viscera_session::recording::{Recording, processor};
+use viscera_session::message::{Bytes, Command, FrameMessage, LONGEST, RunState, Trocar};
+use viscera_session::recording::{Recording, RecordingError, processor};
 
 use crate::support::{BAR, Page, hybrid_bar, light_bar};
 
@@ -146,10 +146,116 @@ fn what_is_no_recording_is_refused() {
     assert!(page.refusals()[0].reason.contains("no recording `nothing`"));
 }
 
+/// The bytes of a recording that comes with the program.
+fn kept(name: &str) -> &'static [u8] {
+    library::recordings().find(|(known, _)| *known == name).expect("the recording is built in").1
+}
+
+/// A list within a list, each of which promises four billion values: a reader that believes them makes room for some of each, and took
+/// a gigabyte for five kilobytes. As few bytes of honest values take thirty times as much in memory, and are counted first.
+#[test]
+fn what_a_recording_promises_is_counted_before_it_is_kept() {
+    let text = |text: &str| [&[0xa0 | text.len() as u8][..], text.as_bytes()].concat();
+    let promise = [0xdd, 0xff, 0xff, 0xff, 0xff];
+    let head = [&[0x82][..], &text("format"), &[3], &text("events")].concat();
+    let event = [&head[..], &[0x91, 0x82], &text("at"), &[0], &text("command")].concat();
+    let nils = [&[0xdd][..], &(1_u32 << 20).to_be_bytes(), &[0xc0; 1 << 20]].concat();
+    for content in [promise.repeat(1000), nils, vec![0x91; 1000]] {
+        for start in [&head, &event] {
+            let bytes = [&start[..], &content].concat();
+            let refused = Recording::decode(&bytes).unwrap_err();
+            assert!(matches!(refused, RecordingError::Unsound { bytes: of } if of == bytes.len()), "{refused}");
+        }
+    }
+}
+
+#[test]
+fn a_recording_that_no_program_makes_is_refused_by_what_is_wrong_with_it() {
+    let changed = |change: &dyn Fn(&mut Vec<(rmpv::Value, rmpv::Value)>)| {
+        let mut whole = rmpv::decode::read_value(&mut kept("edge-cut")).unwrap();
+        let rmpv::Value::Map(entries) = &mut whole else { panic!("it is a map") };
+        change(entries);
+        let mut bytes = Vec::new();
+        rmpv::encode::write_value(&mut bytes, &whole).unwrap();
+        Recording::decode(&bytes)
+    };
+    let put = |key: &'static str, value: rmpv::Value| {
+        changed(&|entries| {
+            let place = entries.iter().position(|(known, _)| known.as_str() == Some(key)).unwrap();
+            entries[place].1 = value.clone();
+        })
+    };
+    assert!(changed(&|_| {}).is_ok());
+    assert!(matches!(put("format", 9.into()), Err(RecordingError::OtherFormat { found: 9 })));
+    assert!(matches!(put("steps", u64::MAX.into()), Err(RecordingError::TooManySteps { steps: u64::MAX })));
+    let map = |entries: &[(&str, rmpv::Value)]| {
+        rmpv::Value::Map(entries.iter().map(|(key, value)| ((*key).into(), value.clone())).collect())
+    };
+    let exports = map(&[("type", "export".into()), ("what", "state".into())]);
+    let events = rmpv::Value::Array(vec![map(&[("at", 7.into()), ("command", exports)])]);
+    assert!(matches!(put("events", events), Err(RecordingError::Foreign { at: 7, command: "export" })));
+    assert!(matches!(Recording::decode(&vec![0; LONGEST + 1]), Err(RecordingError::TooLong { .. })));
+}
+
+/// Cut off anywhere, or with any bits turned over, a recording is read or refused: two thousand of each, none of which ends the test.
+#[test]
+fn damaged_recordings_are_read_or_refused() {
+    let mut random = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = |below: usize| {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random % below as u64) as usize
+    };
+    for name in ["edge-cut", "lobe-pulled"] {
+        let whole = kept(name);
+        for _ in 0..2000 {
+            assert!(Recording::decode(&whole[..next(whole.len())]).is_err(), "what breaks off is no recording");
+            let mut damaged = whole.to_vec();
+            for _ in 0..=next(4) {
+                // Half of the damage to the first bytes, where lists begin.
+                let place = if next(2) == 0 { next(400) } else { next(whole.len()) };
+                damaged[place] ^= 1 << next(8);
+            }
+            let _ = Recording::decode(&damaged);
+        }
+    }
+}
+
+/// Tools that are led through points: given at the beginning, moved and taken away meanwhile.
+#[test]
+fn trocars_are_recorded_and_replayed() {
+    let mut page = Page::open(&light_bar());
+    page.say(Command::StartRecording {});
+    let tip = [0.02, 0.1, 0.06];
+    let direction = Some([0.0, -1.0, 0.0]);
+    let trocar = Some(Trocar::Wanted(true));
+    page.say(Command::AddInstrument { kind: "probe".into(), tip: Some(tip), direction, trocar });
+    let mut poses = Vec::new();
+    for (number, trocar) in
+        [Trocar::At([0.1, 0.2, 0.06]), Trocar::At([-0.1, 0.2, 0.06]), Trocar::Wanted(false)].into_iter().enumerate()
+    {
+        page.say(Command::SetTrocar { instrument: 0, trocar });
+        page.lead(0, [0.02, 0.06 - 0.01 * number as f64, 0.06], 0.0);
+        page.step(5);
+        let tool = &page.frame().instruments[0];
+        poses.push((tool.tip, tool.direction, tool.trocar));
+    }
+    assert_eq!(page.refusals(), []);
+    assert_eq!(poses.iter().map(|pose| pose.2.is_some()).collect::<Vec<_>>(), [true, true, false]);
+    let places = page.positions(0);
+    page.say(Command::StopRecording {});
+    let bytes = page.file();
+    let mut other = Page::open(BAR);
+    assert_eq!(play(&mut other, bytes), ["replayed 15 steps to the same bits"]);
+    assert_eq!(other.positions(0), places);
+    let tool = &other.frame().instruments[0];
+    assert_eq!((tool.tip, tool.direction, tool.trocar), poses[2]);
+}
+
 /// Plays a recording that comes with the program; gives a frame after each of its steps, with what was measured.
 fn watch(name: &str) -> Vec<FrameMessage> {
-    let (_, bytes) = library::recordings().find(|(known, _)| *known == name).expect("the recording is built in");
-    let recording = Recording::decode(bytes).unwrap();
+    let recording = Recording::decode(kept(name)).unwrap();
     let mut page = Page::open(BAR);
     page.say(Command::Replay { name: Some(name.into()), bytes: None });
     assert_eq!(page.refusals(), []);

@@ -152,7 +152,12 @@ impl Page {
 
     /// Brings an instrument in; gives its number.
     pub(crate) fn add(&mut self, kind: &str, tip: [f64; 3], direction: [f64; 3]) -> u32 {
-        self.say(Command::AddInstrument { kind: kind.into(), tip: Some(tip), direction: Some(direction) });
+        self.say(Command::AddInstrument {
+            kind: kind.into(),
+            tip: Some(tip),
+            direction: Some(direction),
+            trocar: None,
+        });
         assert_eq!(self.refusals(), []);
         self.scene().instruments.last().expect("the instrument is there").instrument
     }
