@@ -22,6 +22,12 @@ export class Notices {
     for (const other of this.node.children) {
       if (other instanceof HTMLElement && other.dataset['text'] === text) other.remove();
     }
+    // A report of many lines would lie over the organ: its first says what it is about.
+    const [first = text, ...others] = level === 'info' ? text.split('\n') : [text];
+    const more =
+      others.length > 0
+        ? element('details', {}, element('summary', {}, 'More'), element('p', {}, others.join('\n')))
+        : undefined;
     const close = iconButton('remove', 'Close this notice', () => notice.remove());
     const notice = element(
       'div',
@@ -29,7 +35,8 @@ export class Notices {
       element(
         'div',
         { className: 'notice-text' },
-        element('p', {}, text),
+        element('p', {}, first),
+        more,
         help ? element('p', { className: 'note' }, help) : undefined,
         excerpt ? excerptOf(excerpt) : undefined,
       ),
@@ -38,7 +45,8 @@ export class Notices {
     if (level === 'error') notice.setAttribute('role', 'alert');
     this.node.prepend(notice);
     while (this.node.children.length > MOST) this.node.lastElementChild?.remove();
-    if (Number.isFinite(STAY[level])) setTimeout(() => notice.remove(), 1000 * STAY[level]);
+    // One that is being read stays.
+    if (Number.isFinite(STAY[level])) setTimeout(() => !more?.open && notice.remove(), 1000 * STAY[level]);
   }
 }
 

@@ -102,6 +102,25 @@ export class Stage {
     return Number.isFinite(lowest) ? lowest : otherwise;
   }
 
+  /**
+   * How far from `centre` one has to be, looking along `look` (of length 1), so that everything drawn lies below and above it within `slope` (height
+   * over distance). [m]
+   */
+  distanceToSee(centre: THREE.Vector3, look: THREE.Vector3, up: THREE.Vector3, slope: number): number {
+    const above = up.clone().addScaledVector(look, -up.dot(look)).normalize();
+    const place = new THREE.Vector3();
+    let distance = 0;
+    for (const body of this.bodies) {
+      if (!(body instanceof Organ)) continue;
+      const positions = body.mesh.geometry.getAttribute('position') as THREE.BufferAttribute | undefined;
+      for (let vertex = 0; vertex < (positions?.count ?? 0); vertex++) {
+        place.fromBufferAttribute(positions!, vertex).sub(centre);
+        distance = Math.max(distance, Math.abs(place.dot(above)) / slope - place.dot(look));
+      }
+    }
+    return distance;
+  }
+
   private replaceBodies(scene: Scene): void {
     for (const body of this.bodies) {
       this.group.remove(body instanceof Organ ? body.mesh : body.lines);

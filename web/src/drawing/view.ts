@@ -12,7 +12,10 @@ export type Hit =
 
 /** What tools at the left and charts below cover of the canvas [CSS pixels]. */
 const COVERED_LEFT = 60;
-const COVERED_BELOW = 100;
+const COVERED_BELOW = 124;
+
+/** What is tall fills this part of the height that is free. */
+const MARGIN = 0.94;
 
 /** The canvas with camera and lamps. Draws when something changed, and no oftener than the screen shows. */
 export class View {
@@ -32,6 +35,8 @@ export class View {
   private readonly caster = new THREE.Raycaster();
   private home: Scene | undefined;
   private shownScene = '';
+  /** Another scene came, and no picture of it yet. */
+  private isNew = false;
   private changed = true;
   private lastDrawn = 0;
   private drawnTimes: number[] = [];
@@ -73,6 +78,7 @@ export class View {
     const shown = JSON.stringify([scene.name, scene.title, scene.centre, scene.radius]);
     if (shown !== this.shownScene) {
       this.shownScene = shown;
+      this.isNew = true;
       this.goHome();
     }
     this.invalidate();
@@ -88,6 +94,11 @@ export class View {
 
   setFrame(frame: Frame): void {
     this.stage.setFrame(frame);
+    // All surfaces came before the frame: now it is known what the ball around the scene is filled with.
+    if (this.isNew) {
+      this.isNew = false;
+      this.goHome();
+    }
     this.invalidate();
   }
 
@@ -104,8 +115,11 @@ export class View {
     // So that a ball of that radius fits into what is left free; organs are flatter than balls, so that it may reach a little over.
     const free = (part: number) => Math.max(0.3, part / Math.max(1, height));
     const fit = Math.max(0.85 / free(height - COVERED_BELOW), 1 / free(width - 2 * COVERED_LEFT));
-    const distance = (fit * radius) / Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2);
-    this.camera.up.set(...home.camera.up);
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2);
+    const up = new THREE.Vector3(...home.camera.up);
+    const tall = this.stage.distanceToSee(centre, look, up, MARGIN * slope * free(height - COVERED_BELOW));
+    const distance = Math.max((fit * radius) / slope, tall);
+    this.camera.up.copy(up);
     this.camera.position.copy(centre).addScaledVector(look, -distance);
     this.camera.near = 0.02 * radius;
     this.camera.far = 60 * radius;
