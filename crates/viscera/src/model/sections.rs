@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::block_table::BlockTable;
 use super::patch::Patches;
 use crate::executor::{Divide, Executor, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 
 /// Batches in a section. Fewer, and copies at the seams weigh; more, and ten thousand cells are too few sections for two threads.
 const BATCHES: usize = 128;
@@ -98,6 +98,21 @@ impl Sections {
             work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
         });
         self.copies.add_up_rows(sums.executor, rows, sums.forces);
+    }
+
+    /// The same for symmetric blocks, which `work` sums in two rows for each copy: xx, yy, zz, then xy, xz, yz.
+    pub(crate) fn add_blocks<T: Scalar>(
+        &self,
+        sums: &mut SectionSums<'_, T>,
+        out: &mut [Mat3<T>],
+        work: &(impl Fn(Range<usize>, &mut [[T; 4]]) + Sync),
+    ) {
+        let rows = &mut sums.rows[..2 * self.sum_rows()];
+        self.copies.each(sums.executor, rows, 2, &|section, rows| {
+            rows.fill([T::ZERO; 4]);
+            work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
+        });
+        self.copies.add_up_blocks(sums.executor, rows, out);
     }
 }
 

@@ -19,8 +19,11 @@
 //! Source: Dohrmann, Heinstein, Jung, Key, Witkowski, Int. J. Numer. Meth. Engng 47 (2000), 1549; the share left in the
 //! cells: Puso, Solberg, Int. J. Numer. Meth. Engng 67 (2006), 841, here without the law.
 
+mod batch;
+mod diagonal;
 mod points;
 mod rest;
+mod tangent;
 
 use self::points::NodalPoints;
 use super::registry::Claims;
@@ -28,7 +31,7 @@ use super::{BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKi
 use crate::material::{
     LawFamily, LawKind, NeoHookean, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
 };
-use crate::math::{Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{TetMesh, VolumeMesh};
 
 /// s, the share of the shear modulus that stays in the cells, unless another is asked for.
@@ -120,12 +123,24 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for NodalPoints<T, L> {
         self.add_nodal_forces(x, scratch, out);
     }
 
+    fn linearization_len(&self) -> usize {
+        self.kept_len()
+    }
+
+    fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
+        self.keep_deformations(x, scratch);
+    }
+
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.add_nodal_product(x, dx, scratch, out);
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         self.add_nodal_blocks(x, scratch, sink);
+    }
+
+    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
+        self.add_nodal_diagonal(x, scratch, out);
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

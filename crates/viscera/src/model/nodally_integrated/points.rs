@@ -6,37 +6,34 @@ use std::sync::Arc;
 
 use fearless_simd::{Simd, dispatch};
 
+use super::batch::{Batch, MAX_PARAMETERS, Point};
 use super::rest::{Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Lanes, Mat3, Real, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Mat3, Scalar, Vec3, dispatch_level};
 use crate::mesh::TetMesh;
-use crate::model::block_sink::add_block;
 use crate::model::block_table::BlockTable;
 use crate::model::sections::{SectionScratch, Sections};
-use crate::model::tet_loop::gather_corner;
-use crate::model::{BlockSink, ModelError, Scratch};
+use crate::model::{ModelError, Scratch};
 
 /// Points whose numbers of neighbours are sorted together, in batches: it fills the lanes, and a wider window would
 /// take neighbours apart.
 const WINDOW: usize = 32;
-/// The most parameters of a law.
-const MAX_PARAMETERS: usize = 8;
 
 /// Points in batches of lanes, of the law `L`.
 #[derive(Debug)]
 pub(super) struct NodalPoints<T: Scalar, L> {
     /// The neighbours of batch b are the entries `starts[b]..starts[b + 1]`, the node itself first. Lanes with fewer
     /// repeat it with a gradient of zero.
-    starts: Vec<u32>,
+    pub(super) starts: Vec<u32>,
     /// Entry after entry, a node for each lane.
     nodes: Vec<u32>,
-    sections: Arc<Sections>,
+    pub(super) sections: Arc<Sections>,
     /// Entry after entry, x, y, z of g_ab [1/m] for each lane.
     gradients: Vec<T>,
     /// Entry after entry, what the cells of the point add to the spring k_ab [N/m], for each lane.
     springs: Vec<T>,
     /// V_a [m³], s μ V_a [J], then the law's parameters.
-    constants: BlockTable<T>,
+    pub(super) constants: BlockTable<T>,
     rest: Arc<Rest>,
     /// Which cells are gone.
     removed: Vec<bool>,
@@ -162,44 +159,23 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         entries + self.sections.bytes() + size_of_val(self.gradients.as_slice()) + self.constants.bytes()
     }
 
+    /// Rows that forces are summed in; blocks on the diagonal take two for each.
     pub(super) fn section_rows(&self) -> usize {
-        self.sections.sum_rows()
+        2 * self.sections.sum_rows()
     }
 
     pub(super) fn add_nodal_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        self.add::<false>(scratch);
-        scratch.finish(out);
-    }
-
-    pub(super) fn add_nodal_product(
-        &self,
-        x: &[Vec3<T>],
-        dx: &[Vec3<T>],
-        scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) {
-        scratch.start(x);
-        scratch.start_direction(dx);
-        self.add::<true>(scratch);
-        scratch.finish(out);
-    }
-
-    fn add<const TANGENT: bool>(&self, scratch: &mut Scratch<T>) {
-        let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sections.sum_rows());
+        let SectionScratch { nodal, mut sums, .. } = scratch.sections(self.section_rows());
         self.sections.add(&mut sums, &|batches, rows| {
-            dispatch!(dispatch_level(), simd => self.add_with::<_, TANGENT>(simd, [nodal, direction], batches, rows));
+            dispatch!(dispatch_level(), simd => self.add_forces_with(simd, nodal, batches, rows));
         });
-    }
-
-    pub(super) fn add_nodal_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
-        scratch.start(x);
-        self.add_blocks_with(baseline(), &scratch.nodal, sink);
+        scratch.finish(out);
     }
 
     /// The entries of a batch.
     #[inline(always)]
-    fn batch(&self, number: usize) -> Batch<'_, T> {
+    pub(super) fn batch(&self, number: usize) -> Batch<'_, T> {
         let (start, end) = (self.starts[number] as usize * T::LANES, self.starts[number + 1] as usize * T::LANES);
         Batch {
             nodes: &self.nodes[start..end],
@@ -210,84 +186,13 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     }
 
     #[inline(always)]
-    fn add_with<S: Simd, const TANGENT: bool>(
-        &self,
-        simd: S,
-        [x, dx]: [&[[T; 4]]; 2],
-        batches: Range<usize>,
-        out: &mut [[T; 4]],
-    ) {
+    fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
         for number in batches {
             let batch = self.batch(number);
             let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
             let (f, pull) = batch.around::<S>(simd, x);
-            let (stress, pull) = if TANGENT {
-                let (df, pull) = batch.around::<S>(simd, dx);
-                (point.tangent::<L>(&f, &df), pull)
-            } else {
-                (point.stress::<L>(&f), pull)
-            };
-            let mut sum = pull;
-            let gradients = batch.gradients.chunks_exact(3 * T::LANES);
-            for (rows, gradient) in batch.rows.chunks_exact(T::LANES).zip(gradients).skip(1) {
-                let force = stress * load_gradient::<T, S>(simd, gradient);
-                sum += force;
-                T::Lanes::<S>::scatter_add(force.to_array(), rows, out);
-            }
-            T::Lanes::<S>::scatter_add((-sum).to_array(), &batch.rows[..T::LANES], out);
+            batch.spread::<S>(simd, point.stress::<L>(&f), pull, out);
         }
-    }
-
-    // K_bc = V Σ A:(g_b ⊗ g_c): the law's nine derivatives once, then products with gradients.
-    #[inline(always)]
-    fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
-        let zero = T::Lanes::<S>::splat(simd, T::ZERO);
-        let one = T::Lanes::<S>::splat(simd, T::ONE);
-        for number in 0..self.starts.len() - 1 {
-            let batch = self.batch(number);
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
-            let (f, _) = batch.around::<S>(simd, x);
-            let Batch { nodes, gradients, springs, .. } = batch;
-            let mut derivatives = [[f; 3]; 3];
-            for row in 0..3 {
-                for column in 0..3 {
-                    let mut direction = Mat3::from_columns(Vec3::splat(zero), Vec3::splat(zero), Vec3::splat(zero));
-                    direction.columns[column][row] = one;
-                    derivatives[row][column] = point.tangent::<L>(&f, &direction);
-                }
-            }
-            let count = nodes.len() / T::LANES;
-            let points = self.constants.rows() - number * T::LANES;
-            for c in 0..count {
-                let g = load_gradient::<T, S>(simd, &gradients[3 * c * T::LANES..]);
-                let along = [0, 1, 2].map(|row: usize| {
-                    let [a, b, c] = derivatives[row];
-                    a * g.x + b * g.y + c * g.z
-                });
-                let rows = if sink.keeps_diagonal_only() { c..c + 1 } else { 0..count };
-                for b in rows {
-                    let g = load_gradient::<T, S>(simd, &gradients[3 * b * T::LANES..]);
-                    let [x, y, z] = along.map(|stress| stress * g);
-                    let block = Mat3::from_columns(x, y, z);
-                    add_block::<T, S>(&block, nodes, [b, c], points, sink);
-                }
-            }
-            self.add_springs::<S>(simd, nodes, springs, points, sink);
-        }
-    }
-
-    /// Springs hold a point to its neighbours: its own row of the matrix, as the neighbours' points have theirs.
-    #[inline(always)]
-    fn add_springs<S: Simd>(&self, simd: S, nodes: &[u32], springs: &[T], points: usize, sink: &mut dyn BlockSink<T>) {
-        let mut sum = T::Lanes::<S>::splat(simd, T::ZERO);
-        for (entry, spring) in springs.chunks_exact(T::LANES).enumerate().skip(1) {
-            let spring = T::Lanes::<S>::load(simd, spring);
-            sum += spring;
-            if !sink.keeps_diagonal_only() {
-                add_block::<T, S>(&Mat3::diagonal(-spring), nodes, [0, entry], points, sink);
-            }
-        }
-        add_block::<T, S>(&Mat3::diagonal(sum), nodes, [0, 0], points, sink);
     }
 
     /// Sum of the energies [J], point by point in double precision.
@@ -316,86 +221,4 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         };
         (0..self.constants.rows()).map(at_point).sum()
     }
-}
-
-/// Volume, share and law of a batch of points.
-struct Point<R> {
-    volume: R,
-    share: R,
-    parameters: [R; MAX_PARAMETERS],
-}
-
-impl<R: Real> Point<R> {
-    #[inline(always)]
-    fn load<T, S, L>(simd: S, constants: &[T]) -> Self
-    where
-        T: Scalar<Lanes<S> = R>,
-        S: Simd,
-        R: Lanes<T, S>,
-        L: LawFamily,
-    {
-        let constant = |column: usize| R::load(simd, &constants[column * T::LANES..]);
-        let mut parameters = [R::splat(simd, T::ZERO); MAX_PARAMETERS];
-        for column in 0..L::PARAMETERS.len() {
-            parameters[column] = constant(2 + column);
-        }
-        Self { volume: constant(0), share: constant(1), parameters }
-    }
-
-    /// V P(F̄) of the law, less the share of the cells.
-    #[inline(always)]
-    fn stress<L: LawFamily>(&self, f: &Mat3<R>) -> Mat3<R> {
-        let law = L::at(&self.parameters[..L::PARAMETERS.len()]);
-        law.stress(f) * self.volume - *f * self.share
-    }
-
-    #[inline(always)]
-    fn tangent<L: LawFamily>(&self, f: &Mat3<R>, df: &Mat3<R>) -> Mat3<R> {
-        let law = L::at(&self.parameters[..L::PARAMETERS.len()]);
-        law.tangent(f, df) * self.volume - *df * self.share
-    }
-}
-
-/// A mean of gradients, and a pull of springs.
-type Around<R> = (Mat3<R>, Vec3<R>);
-
-/// The entries of a batch of points.
-#[derive(Clone, Copy)]
-struct Batch<'a, T> {
-    nodes: &'a [u32],
-    /// Where the batch sums, entry by entry.
-    rows: &'a [u32],
-    gradients: &'a [T],
-    springs: &'a [T],
-}
-
-impl<'a, T: Scalar> Batch<'a, T> {
-    /// A node, x, y, z of a gradient, and a spring, for each lane.
-    #[inline(always)]
-    fn entries(self) -> impl Iterator<Item = (&'a [u32], &'a [T], &'a [T])> {
-        let gradients = self.gradients.chunks_exact(3 * T::LANES);
-        let others = gradients.zip(self.springs.chunks_exact(T::LANES));
-        self.nodes.chunks_exact(T::LANES).zip(others).map(|(nodes, (gradient, spring))| (nodes, gradient, spring))
-    }
-
-    /// Σ_b (v_b − v_a) g_abᵀ and Σ_b k_ab (v_b − v_a): of places F̄ and the pull of the springs, of directions their
-    /// derivatives. The differences keep digits that v alone would lose.
-    #[inline(always)]
-    fn around<S: Simd>(self, simd: S, v: &[[T; 4]]) -> Around<T::Lanes<S>> {
-        let own = gather_corner::<T, S>(simd, v, self.nodes, 0);
-        let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
-        let (mut mean, mut pull) = (Mat3::from_columns(zero, zero, zero), zero);
-        for (nodes, gradient, spring) in self.entries().skip(1) {
-            let apart = gather_corner::<T, S>(simd, v, nodes, 0) - own;
-            mean += apart.outer(load_gradient::<T, S>(simd, gradient));
-            pull += apart * T::Lanes::<S>::load(simd, spring);
-        }
-        (mean, pull)
-    }
-}
-
-#[inline(always)]
-fn load_gradient<T: Scalar, S: Simd>(simd: S, gradient: &[T]) -> Vec3<T::Lanes<S>> {
-    let component = |axis: usize| T::Lanes::<S>::load(simd, &gradient[axis * T::LANES..]);
-    Vec3::new(component(0), component(1), component(2))
 }
