@@ -39,6 +39,10 @@ impl Cholesky {
 }
 
 impl LinearSolver for Cholesky {
+    fn factorises(&self) -> bool {
+        true
+    }
+
     fn analyse(&mut self, system: &System) {
         self.numeric = None;
         self.triangle = Triangle::new(system);

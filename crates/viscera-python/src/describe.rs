@@ -75,8 +75,9 @@ pub(crate) fn scene(world: &PyWorld, duration: f64, folder: &Path) -> PyResult<J
             return Err(refuse(format!("two instruments are named `{name}`; names in a scene differ")));
         }
     }
-    let config = in_world!(&world.world, inner => inner.config().clone());
-    let (integrator, substep) = integrator(config.integrator);
+    let (config, factorises) =
+        in_world!(&world.world, inner => (inner.config().clone(), inner.static_solver().factorises()));
+    let (integrator, substep) = integrator(config.integrator, factorises);
     Ok(object! {
         "gravity": Json::from(config.gravity.to_vec()),
         "duration": Json::from(duration),
@@ -305,19 +306,20 @@ fn model(model: &AnyModel, keep_volume: f64) -> PyResult<Json> {
 }
 
 /// The integrator, and the sub-step where it has one.
-fn integrator(integrator: Integrator) -> (Json, Json) {
+fn integrator(integrator: Integrator, factorises: bool) -> (Json, Json) {
     match integrator {
         Integrator::Explicit(Substep::Automatic) => (object! { "kind": Json::from("explicit") }, "auto".into()),
         Integrator::Explicit(Substep::Fixed(time)) => (object! { "kind": Json::from("explicit") }, time.into()),
         Integrator::Implicit(settings) => (implicit(settings), "auto".into()),
-        Integrator::QuasiStatic(settings) => (quasi_static(settings), "auto".into()),
+        Integrator::QuasiStatic(settings) => (quasi_static(settings, factorises), "auto".into()),
     }
 }
 
-fn quasi_static(settings: QuasiStatic) -> Json {
+fn quasi_static(settings: QuasiStatic, factorises: bool) -> Json {
     let full = object! { "tolerance": Json::from(settings.tolerance), "iterations": Json::from(settings.iterations) };
     let newton = if settings.small_strain { Json::from("linearised") } else { full };
-    object! { "kind": Json::from("quasi-static"), "newton": newton }
+    let solver = factorises.then(|| Json::from("direct"));
+    object! { "kind": Json::from("quasi-static"), "newton": newton, "solver": solver }
 }
 
 fn implicit(settings: Implicit) -> Json {

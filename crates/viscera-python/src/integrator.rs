@@ -3,8 +3,9 @@
 use pyo3::prelude::*;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::dynamics::quasi_static::QuasiStatic;
-use viscera::solver::Stop;
+use viscera::solver::{Iterative, LinearSolver, Stop};
 use viscera::world::{Integrator, Substep};
+use viscera_direct::Cholesky;
 
 use crate::model::choose;
 
@@ -35,21 +36,39 @@ pub(crate) struct PyImplicit(Implicit);
 
 /// From one equilibrium to the next: loads and prescribed motions go on with time, without inertia or damping.
 #[pyclass(frozen, name = "QuasiStatic", module = "viscera")]
-pub(crate) struct PyQuasiStatic(QuasiStatic);
+pub(crate) struct PyQuasiStatic {
+    settings: QuasiStatic,
+    /// Which linear solver.
+    solver: String,
+}
 
 #[pymethods]
 impl PyQuasiStatic {
     /// `tolerance`: residual relative to loads and reactions; `iterations`: the most for a share of a step's load; `small_strain`: one
-    /// linear solve from rest in each step.
+    /// linear solve from rest in each step; `solver`: "iterative" (conjugate gradients) or "direct" (sparse Cholesky). How each step
+    /// came to rest is in `SimulatedBody.static_report`.
     #[new]
-    #[pyo3(signature = (*, tolerance=1e-10, iterations=30, small_strain=false))]
-    fn new(tolerance: f64, iterations: usize, small_strain: bool) -> Self {
-        Self(QuasiStatic { tolerance, iterations, small_strain, ..QuasiStatic::default() })
+    #[pyo3(signature = (*, tolerance=1e-10, iterations=30, small_strain=false, solver="iterative"))]
+    fn new(tolerance: f64, iterations: usize, small_strain: bool, solver: &str) -> PyResult<Self> {
+        static_solver(solver, TOLERANCE)?;
+        let settings = QuasiStatic { tolerance, iterations, small_strain, ..QuasiStatic::default() };
+        Ok(Self { settings, solver: solver.to_owned() })
     }
 
     fn __repr__(&self) -> String {
-        format!("<{:?}>", self.0)
+        format!("<{:?}, solver {:?}>", self.settings, self.solver)
     }
+}
+
+/// Residual of conjugate gradients: what a factorisation would leave.
+pub(crate) const TOLERANCE: f64 = 1e-12;
+
+/// The solver of an equilibrium's linear systems that is meant.
+pub(crate) fn static_solver(name: &str, tolerance: f64) -> PyResult<Box<dyn LinearSolver>> {
+    Ok(match choose("solver", name, &[("direct", true), ("iterative", false)])? {
+        true => Box::new(Cholesky::default()),
+        false => Box::new(Iterative::new(tolerance)),
+    })
 }
 
 fn scheme(name: &str, beta: f64, gamma: f64) -> PyResult<Scheme> {
@@ -117,14 +136,17 @@ impl PyImplicit {
     }
 }
 
-/// The integrator that is meant; explicit where none is given.
-pub(crate) fn integrator(given: Option<&Bound<'_, PyAny>>) -> PyResult<Integrator> {
-    let Some(given) = given else { return Ok(Integrator::default()) };
+/// The integrator that is meant, and the solver of its equilibria where another than the world's own is; explicit where none is given.
+pub(crate) fn integrator(given: Option<&Bound<'_, PyAny>>) -> PyResult<(Integrator, Option<Box<dyn LinearSolver>>)> {
+    let Some(given) = given else { return Ok((Integrator::default(), None)) };
     if let Ok(explicit) = given.cast::<PyExplicit>() {
-        return Ok(Integrator::Explicit(explicit.get().0));
+        return Ok((Integrator::Explicit(explicit.get().0), None));
     }
     match given.cast::<PyQuasiStatic>() {
-        Ok(quasi_static) => Ok(Integrator::QuasiStatic(quasi_static.get().0)),
-        Err(_) => Ok(Integrator::Implicit(given.cast::<PyImplicit>()?.get().0)),
+        Ok(quasi_static) => {
+            let PyQuasiStatic { settings, solver } = quasi_static.get();
+            Ok((Integrator::QuasiStatic(*settings), Some(static_solver(solver, TOLERANCE)?)))
+        }
+        Err(_) => Ok((Integrator::Implicit(given.cast::<PyImplicit>()?.get().0), None)),
     }
 }

@@ -10,14 +10,13 @@ use viscera::dynamics::quasi_static::QuasiStatic;
 use viscera::math::{Mat3, Scalar, Vec3};
 use viscera::mesh::VolumeMesh;
 use viscera::model::Scratch;
-use viscera::solver::{Iterative, LinearSolver};
 use viscera::world::BodyId;
-use viscera_direct::Cholesky;
 
 use crate::arrays::{Numbers, NumpyScalar, index_array, list_array, matrix_array, vector_array, vectors_of};
 use crate::error::OrRaise;
+use crate::integrator::{TOLERANCE, static_solver};
 use crate::mesh::mesh_object;
-use crate::model::{BlockArrays, Blocks, choose};
+use crate::model::{BlockArrays, Blocks};
 use crate::report::{PyBodyObservables, PyKeptVolume, PyStaticReport};
 use crate::view::{Of, view};
 use crate::world::{PyWorld, in_world};
@@ -101,13 +100,6 @@ macro_rules! matrix_field {
     ($self:ident, $py:ident, |$body:ident, $cell:ident| $value:expr) => {
         $self.matrices($py, |$body, $cell| $value, |$body, $cell| $value)
     };
-}
-
-fn solver(name: &str, tolerance: f64) -> PyResult<Box<dyn LinearSolver + Send>> {
-    Ok(match choose("solver", name, &[("direct", true), ("iterative", false)])? {
-        true => Box::new(Cholesky::default()),
-        false => Box::new(Iterative::new(tolerance)),
-    })
 }
 
 fn cast<T: NumpyScalar>(vectors: &[Vec3<f64>]) -> Vec<Vec3<T>> {
@@ -309,13 +301,20 @@ impl PySimulatedBody {
         solver: &str,
     ) -> PyResult<PyStaticReport> {
         let settings = QuasiStatic { tolerance, iterations, first_step, smallest_step, small_strain };
-        let mut solver = self::solver(solver, 1e-12)?;
+        let mut solver = static_solver(solver, TOLERANCE)?;
         let mut world = self.change(py)?;
         let inner = &mut world.world;
         let outcome =
             py.detach(|| in_world!(inner, world => world.settle(self.id, &settings, solver.as_mut()))).or_raise();
         world.refresh(py)?;
         outcome.map(PyStaticReport)
+    }
+
+    /// How it came to rest in the last step of a quasi-static world, or when it was settled. None where no equilibrium was sought, or the
+    /// last was not found.
+    #[getter]
+    fn static_report(&self, py: Python<'_>) -> PyResult<Option<PyStaticReport>> {
+        Ok(in_world!(&self.read(py)?.world, world => world.body(self.id).static_report().cloned()).map(PyStaticReport))
     }
 
     /// How the body answers small extra forces where it is: (K + `inertia` M)⁻¹ f in the free directions [m], for forces [N] of shape
@@ -343,7 +342,7 @@ impl PySimulatedBody {
         let vector = |v: &[f64]| Vec3::new(v[0], v[1], v[2]);
         let right: Vec<Vec<Vec3<f64>>> =
             (0..count).map(|k| flat[k * 3 * nodes..][..3 * nodes].chunks(3).map(vector).collect()).collect();
-        let mut solver = self::solver(solver, 1e-12)?;
+        let mut solver = static_solver(solver, TOLERANCE)?;
         let mut world = self.compute(py)?;
         let inner = &mut world.world;
         let answers = py

@@ -219,11 +219,15 @@ impl PyWorld {
         precision: &str,
         threads: usize,
     ) -> PyResult<Self> {
-        let config = WorldConfig { gravity, step, integrator: self::integrator(integrator)? };
-        let world = match choose("precision", precision, &[("single", true), ("double", false)])? {
+        let (integrator, solver) = self::integrator(integrator)?;
+        let config = WorldConfig { gravity, step, integrator };
+        let mut world = match choose("precision", precision, &[("single", true), ("double", false)])? {
             true => AnyWorld::Single(World::new(config).or_raise()?),
             false => AnyWorld::Double(World::new(config).or_raise()?),
         };
+        if let Some(solver) = solver {
+            in_world!(&mut world, world => world.set_static_solver(solver));
+        }
         Ok(Self::from_world(world, Executor::threads(threads).or_raise()?, Vec::new()))
     }
 

@@ -102,6 +102,19 @@ def test_a_load_beyond_the_law_says_how_far_it_went(beam):
         body.settle()
 
 
+@pytest.mark.parametrize("solver", ["iterative", "direct"])
+def test_steps_of_a_quasi_static_world_keep_their_residuals(solver):
+    world = viscera.World(gravity=[0, -0.5, 0], integrator=viscera.QuasiStatic(solver=solver))
+    law = viscera.NeoHookean.from_young_poisson(10e3, 0.4)
+    mesh = viscera.TetMesh.box_grid([2, 2, 8], [0.1, 0.1, 0.4])
+    body = world.add(viscera.Body(mesh, 1000.0, model=viscera.TotalLagrangian(law), fix="z-min"))
+    assert body.static_report is None
+    world.step()
+    share, residuals = body.static_report.steps[-1]
+    assert share == 1.0 and len(residuals) > 3 and residuals[-1] <= 1e-10 < residuals[0]
+    assert body.static_report.iterations == sum(len(step[1]) - 1 for step in body.static_report.steps)
+
+
 def test_the_answer_to_small_forces_is_the_slope_of_the_equilibrium(beam):
     """Two equilibria with forces of ±h on the tip against one linear solve: the difference is of second order in h."""
     _, body = beam()

@@ -183,7 +183,7 @@ def test_a_world_that_python_described_is_written_to_run_to_the_same_bits(seed, 
         assert again.instruments[name].observe().as_dict() == tool.observe().as_dict()
 
 
-@pytest.mark.parametrize("scheme", [viscera.Implicit("newmark", gamma=0.6, beta=0.31), viscera.Implicit.accurate(), viscera.Explicit(1e-4), viscera.QuasiStatic(tolerance=1e-9)])
+@pytest.mark.parametrize("scheme", [viscera.Implicit("newmark", gamma=0.6, beta=0.31), viscera.Implicit.accurate(), viscera.Explicit(1e-4), viscera.QuasiStatic(tolerance=1e-9), viscera.QuasiStatic(solver="direct")])
 def test_an_integrator_is_written_to_run_to_the_same_bits(scheme, beam, tmp_path):
     world, body = beam(integrator=scheme)
     again, _, _ = viscera.Scene.load(world.write_scene(tmp_path, duration=0.1)).build()

@@ -123,7 +123,9 @@ impl Gate {
                 }
                 continue;
             }
-            self.wait_until(|| self.state.load(Ordering::Relaxed) != state || self.callers.load(Ordering::Relaxed) == 0);
+            self.wait_until(|| {
+                self.state.load(Ordering::Relaxed) != state || self.callers.load(Ordering::Relaxed) == 0
+            });
             if self.callers.load(Ordering::SeqCst) == 0 && !self.sleep() {
                 return None;
             }

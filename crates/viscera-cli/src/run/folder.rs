@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::equilibria;
 use crate::failure::Failure;
 
 /// The folder in it for checkpoints, and how their names end.
@@ -72,7 +73,13 @@ fn is_result(file: &Path) -> bool {
         return number(file, ENDING).is_some();
     }
     match &*name {
-        "bodies.pvd" | "observables.csv" | "summary.json" | "start.png" | "middle.png" | "end.png" => true,
+        "bodies.pvd"
+        | "observables.csv"
+        | equilibria::FILE
+        | "summary.json"
+        | "start.png"
+        | "middle.png"
+        | "end.png" => true,
         _ => name.starts_with("picture-") && number(file, ".png").is_some(),
     }
 }

@@ -2,6 +2,7 @@
 
 mod album;
 mod checkpoint;
+mod equilibria;
 pub(crate) mod folder;
 mod frames;
 mod instrument_shape;

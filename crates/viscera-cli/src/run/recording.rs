@@ -9,6 +9,7 @@ use viscera_scene::BuiltScene;
 
 use super::Ending;
 use super::album::Album;
+use super::equilibria::{self, Equilibria};
 use super::folder::Folder;
 use super::frames::Frames;
 use super::moment::Moment;
@@ -45,6 +46,8 @@ pub(crate) struct Recording<'a> {
     folder: Folder,
     frames: Frames,
     observables: Observables,
+    /// Residuals, where the run goes from equilibrium to equilibrium.
+    equilibria: Option<Equilibria>,
     album: Album,
     tally: Tally,
     began: Instant,
@@ -62,6 +65,7 @@ pub(crate) struct Kept {
     steps: u64,
     frames: Vec<f64>,
     observables: observables::Kept,
+    equilibria: Vec<f64>,
     moments: Vec<Moment>,
     tally: Tally,
 }
@@ -91,6 +95,7 @@ impl<'a> Recording<'a> {
             clock: Clock::default(),
             frames: Frames::new(&folder, built),
             observables: Observables::new(&folder, built),
+            equilibria: Equilibria::of(&folder, built),
             album: Album::new(pictures, built.steps()),
             tally: Tally::new(scene, built),
             folder,
@@ -117,6 +122,7 @@ impl<'a> Recording<'a> {
             clock: Clock { spent: kept.computing },
             frames: Frames::going_on(&folder, built, kept.frames)?,
             observables: Observables::going_on(&folder, built, kept.observables).map_err(Failure::problem)?,
+            equilibria: Equilibria::going_on(&folder, built, &kept.equilibria).map_err(Failure::problem)?,
             album: Album::going_on(pictures, built.steps(), kept.moments),
             tally: kept.tally,
             folder,
@@ -135,6 +141,7 @@ impl<'a> Recording<'a> {
             steps: self.steps,
             frames: self.frames.times().to_vec(),
             observables: self.observables.kept(),
+            equilibria: self.equilibria.as_ref().map_or_else(Vec::new, Equilibria::kept),
             moments: self.album.moments().to_vec(),
             tally: self.tally.clone(),
         }
@@ -153,6 +160,9 @@ impl<'a> Recording<'a> {
     pub(crate) fn record<T: Scalar>(&mut self, built: &mut BuiltScene<T>, report: &StepReport) -> Result<(), Failure> {
         self.steps += 1;
         self.tally.count(report);
+        if let Some(equilibria) = &mut self.equilibria {
+            self.stopwatch.time(Cost::Output, || equilibria.record(built, self.steps)).map_err(Failure::problem)?;
+        }
         self.look(built, report.substeps)
     }
 
@@ -176,9 +186,14 @@ impl<'a> Recording<'a> {
                 self.frames.write(built).map_err(Failure::problem)?;
             }
             self.observables.finish().map_err(Failure::problem)?;
+            if let Some(equilibria) = &mut self.equilibria {
+                equilibria.write().map_err(Failure::problem)?;
+            }
             let pictures = self.album.write(&self.folder, built, self.steps)?;
             let mut files = vec![format!("bodies.pvd ({} frames)", self.frames.count())];
-            files.extend(["observables.csv".to_owned(), "summary.json".to_owned()]);
+            files.push("observables.csv".to_owned());
+            files.extend(self.equilibria.is_some().then(|| equilibria::FILE.to_owned()));
+            files.push("summary.json".to_owned());
             files.extend(pictures);
             let summary = self.tally.summary(built, ending, self.clock.seconds(), self.wall().as_secs_f64());
             summary.write(&self.folder).map_err(Failure::problem)?;
@@ -195,6 +210,7 @@ impl<'a> Recording<'a> {
         }
         // The rows in memory may find room where the file that failed did not; if not, those in the file stand.
         let _ = self.observables.finish();
+        let _ = self.equilibria.as_mut().map(Equilibria::write);
         let mut standing = Vec::new();
         if let Some(last) = self.frames.times().last() {
             standing.push(format!("{} frames up to {last:.4} s", self.frames.count()));

@@ -1,6 +1,7 @@
 //! The summary on the screen.
 
 use viscera_io::grouped;
+use viscera_scene::file::IntegratorName;
 
 use super::summary::{BodyResult, Summary};
 use crate::tables::{table, table_text};
@@ -110,6 +111,14 @@ fn speed(summary: &Summary) -> String {
             };
             let stable = with_prefix(summary.stable_step_at_end, "s");
             format!("{steps} steps of {step} in {substeps} sub-steps{again}; the stable step is {stable}")
+        }
+        Some(implicit) if summary.integrator == IntegratorName::QuasiStatic.name() => {
+            let each = implicit.newton_iterations as f64 / (*steps as f64).max(1.0);
+            let again = match summary.retries {
+                0 => String::new(),
+                count => format!("; {count} shares of a load were tried in vain"),
+            };
+            format!("{steps} equilibria, {step} apart, {each:.1} iterations of Newton's method to each{again}")
         }
         Some(implicit) => {
             let each = implicit.linear_iterations as f64 / (*steps as f64).max(1.0);

@@ -94,6 +94,46 @@ fn the_health_of_the_cells_is_on_record() {
     assert!(summary["implicit"]["linear_iterations"].as_u64().unwrap() > summary["steps"].as_u64().unwrap());
 }
 
+/// A quasi-static run tells how each equilibrium was found: residuals of every share of the load, that fall to what was asked for. Newton's
+/// method falls quadratically at the end, whichever solver it has; at small strain one solve has one row before and one after.
+#[test]
+fn a_quasi_static_run_leaves_the_residuals_of_every_load_step() {
+    let desk = Desk::new();
+    desk.write("cube.toml", CUBE.replace("duration", "precision = \"double\"\nduration").replace("10 kPa", "2 kPa"));
+    let runs = [("iterative", "full"), ("direct", "full"), ("direct", "linearised")];
+    let displacements = runs.map(|(solver, newton)| {
+        let set = format!("integrator={{ kind = \"quasi-static\", solver = \"{solver}\", newton = \"{newton}\" }}");
+        let folder = format!("{solver}-{newton}");
+        let outcome = desk.viscera(&["run", "cube.toml", "--pictures=0", "--set", &set, "--out", &folder]).ends_with(0);
+        outcome.says("equilibria, 10 ms apart").says("equilibria.csv");
+
+        let csv = desk.read(&format!("{folder}/equilibria.csv"));
+        assert!(csv.starts_with("time [s],body [0 cube],share of the load [1],iteration [1],residual [1]\n"), "{csv}");
+        let [times, shares, counts, residuals] =
+            ["time [s]", "share of the load [1]", "iteration [1]", "residual [1]"].map(|name| column(&csv, name));
+        let first: Vec<usize> = (0..times.len()).take_while(|&row| times[row] == times[0]).collect();
+        let ends: Vec<usize> =
+            (0..times.len()).filter(|&row| row + 1 == times.len() || counts[row + 1] == 0.0).collect();
+        assert!((times[times.len() - 1] - 0.1).abs() < 1e-12 && shares[shares.len() - 1] == 1.0);
+        if newton == "full" {
+            assert!(first.len() > 3 && ends.iter().all(|&row| residuals[row] <= 1e-10), "{csv}");
+            // The next residual is of the order of the square of the one before.
+            let last = first.len() - 1;
+            assert!(residuals[last] < 10.0 * residuals[last - 1].powi(2) + 1e-10, "{csv}");
+        } else {
+            assert_eq!(first.len(), 2);
+        }
+        body(&desk.json(&format!("{folder}/summary.json")), "cube")["max_displacement_m"].as_f64().unwrap()
+    });
+    assert!((displacements[0] / displacements[1] - 1.0).abs() < 1e-8, "{displacements:?} m");
+    assert!((displacements[2] / displacements[1] - 1.0).abs() > 1e-3, "{displacements:?} m");
+
+    // More than the law can bear: what stands, and how much it bore.
+    let heavy = ["run", "cube.toml", "--pictures=0", "--set", "integrator={ kind = \"quasi-static\" }", "--set"];
+    let heavy = [&heavy[..], &["gravity=[0, 200, 0]", "--out", "heavy"]].concat();
+    desk.viscera(&heavy).ends_with(1).complains("has an equilibrium at").complains("stable-neo-hookean");
+}
+
 /// The table of INRIA RR-4028: bent by F, 2F and 3F, the linear cylinder gains several to tens of per cent of volume, the
 /// non-linear one stays below 2.5 %, and the volume-keeping force lowers that further.
 #[test]

@@ -1,13 +1,13 @@
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::dynamics::quasi_static::QuasiStatic;
-use viscera::solver::Stop;
+use viscera::solver::{LinearSolver, Stop};
 use viscera::world::{Integrator, Substep};
 
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::{
     FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile,
-    SceneFile, SubstepFile,
+    SceneFile, SolverFile, SubstepFile,
 };
 
 /// Iterations of the linear solver where the scene gives a tolerance alone.
@@ -17,6 +17,9 @@ const MOST_ITERATIONS: u32 = 2000;
 pub(super) fn integrator(file: &SceneFile, root: &Site) -> Result<Integrator, SceneErrors> {
     let settings = &file.integrator;
     let site = root.key("integrator");
+    if settings.kind != IntegratorName::QuasiStatic {
+        only(&site, [("solver", settings.solver.is_some())], "`quasi-static`")?;
+    }
     if settings.kind != IntegratorName::Newmark {
         only(&site, [("beta", settings.beta.is_some()), ("gamma", settings.gamma.is_some())], "`newmark`")?;
     }
@@ -76,6 +79,23 @@ fn quasi_static(newton: Option<NewtonFile>) -> QuasiStatic {
             QuasiStatic { tolerance, iterations: iterations as usize, ..QuasiStatic::default() }
         }
     }
+}
+
+/// What solves the equilibria of the scene, where it is not the world's own solver.
+pub(super) fn static_solver(file: &IntegratorFile) -> Option<Box<dyn LinearSolver>> {
+    (file.solver == Some(SolverFile::Direct)).then(factorisation)
+}
+
+#[cfg(feature = "direct")]
+fn factorisation() -> Box<dyn LinearSolver> {
+    Box::new(viscera_direct::Cholesky::default())
+}
+
+/// The engine's own, where the sparse one would be too much to compile and to load: the same answer to rounding, slower beyond some
+/// ten thousand unknowns.
+#[cfg(not(feature = "direct"))]
+fn factorisation() -> Box<dyn LinearSolver> {
+    Box::new(viscera::solver::Envelope::default())
 }
 
 fn implicit(file: &IntegratorFile, scheme: Scheme, site: &Site) -> Result<Implicit, SceneErrors> {

@@ -74,6 +74,9 @@ impl Scene {
             integrator: integrator::integrator(&file, &root)?,
         };
         let mut world = World::new(config).map_err(|error| root.error(error, ""))?;
+        if let Some(solver) = integrator::static_solver(&file.integrator) {
+            world.set_static_solver(solver);
+        }
         let mut notices = Vec::new();
         let mut bodies = IndexMap::new();
         for (name, described) in &file.body {
@@ -92,7 +95,7 @@ impl Scene {
                 ),
                 WorldError::NoMeanForces { model, law, .. } => root.key("integrator").key("kind").error(
                     format!("`energy-momentum` cannot step body `{name}`: `{model}` of the law `{law}`"),
-                    "it needs the law `st-venant-kirchhoff` on tetrahedra by the model `total-lagrangian`, without \
+                    "it needs the law `st-venant-kirchhoff` by the model `total-lagrangian`, without \
                      `keep-volume`",
                 ),
                 WorldError::ModelNeedsExplicit { model, advice, .. } => root.key("integrator").key("kind").error(

@@ -23,6 +23,9 @@ pub struct IntegratorFile {
     /// tissue, long steps and fine meshes; the motion is the same within the tolerance of `linear`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preconditioner: Option<PreconditionerFile>,
+    /// What solves the linear systems of a quasi-static step: "iterative" (the default) or "direct".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<SolverFile>,
     /// β of `newmark`, the share of the end in the position; by default 1/4, the average acceleration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 0.5))]
@@ -133,8 +136,19 @@ pub enum MatrixFile {
 pub enum PreconditionerFile {
     /// The blocks on the diagonal: cheap; iterations grow with the number of cells along the body.
     BlockJacobi,
-    /// Coarser and coarser lattices over the body: as many iterations for a million cells as for a thousand.
+    /// Coarser and coarser lattices over the body: their number of iterations hardly grows with that of the cells.
     Multigrid,
+}
+
+/// What solves the linear systems of equilibria.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolverFile {
+    /// Conjugate gradients on the assembled matrix, to 1e-12: little memory, for bodies of any size.
+    Iterative,
+    /// A Cholesky factorisation: sure to notice a body that is unstable, and faster where the stiffness is close to singular, as that of
+    /// thin or nearly incompressible bodies.
+    Direct,
 }
 
 fn one_in_a_hundred_million() -> f64 {

@@ -26,6 +26,7 @@ pub use curve::{CurveFile, CurvePath};
 pub use instrument::{InstrumentFile, JawsFile, ShaftFile};
 pub use integrator::{
     FullNewtonFile, IntegratorFile, IntegratorName, LinearFile, MatrixFile, NewtonFile, NewtonName, PreconditionerFile,
+    SolverFile,
 };
 pub use law::{FibreFile, LawFile, LawName};
 pub use mesh::{

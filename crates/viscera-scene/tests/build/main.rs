@@ -64,6 +64,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", matrix = \"assembled\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"explicit\", preconditioner = \"multigrid\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"quasi-static\", linear = { iterations = 5 } }"),
+    ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", solver = \"direct\" }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", beta = 0.3 }"),
     ("substep = \"1e-4 s\"", "integrator = { kind = \"bdf2\", linear = {} }"),
     ("substep = \"1e-4 s\"", "substep = \"1 ms\"\nintegrator = { kind = \"backward-euler\" }"),
@@ -188,6 +189,7 @@ fn equilibria_can_be_asked_for_in_every_way() {
             "#
         );
         let mut built = built(&text);
+        assert_eq!(built.world.static_solver().factorises(), settings.contains("direct"));
         for _ in 0..built.steps() {
             built.world.step().unwrap_or_else(|error| panic!("{error}"));
         }
@@ -200,6 +202,61 @@ fn equilibria_can_be_asked_for_in_every_way() {
     assert!((hang(", newton = { tolerance = 1e-6, iterations = 10 }").0 / full - 1.0).abs() < 1e-5);
     let (linear, _) = hang(", newton = \"linearised\"");
     assert!(1e-3 < (linear / full - 1.0).abs(), "{linear} m at small strain, {full} m");
+    assert_eq!(hang(", solver = \"iterative\"").0, full);
+    for newton in ["", ", newton = \"linearised\""] {
+        let (factored, iterated) = (hang(&format!("{newton}, solver = \"direct\"")).0, hang(newton).0);
+        assert!((factored / iterated - 1.0).abs() < 1e-9, "{factored} m by a factorisation, {iterated} m");
+    }
+}
+
+/// A load that St Venant–Kirchhoff tissue cannot bear ends the run with the body, its law, the share that was borne and what to do; the
+/// steps before it tell how each share of the load came to rest.
+#[test]
+fn a_load_beyond_what_the_law_bears_is_told_with_the_share_that_it_bore() {
+    use viscera::dynamics::quasi_static::StaticError;
+    use viscera::world::StepError;
+
+    for solver in ["iterative", "direct"] {
+        let mut built = built(&format!(
+            r#"
+            duration = "1 s"
+            step = "0.1 s"
+            gravity = [0, 0, 0]
+            integrator = {{ kind = "quasi-static", solver = "{solver}" }}
+            [body.bar]
+            mesh = {{ generate = "box", size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }}
+            density = 1000
+            law = {{ kind = "st-venant-kirchhoff", young = "10 kPa", poisson = 0.3 }}
+            model = {{ kind = "total-lagrangian" }}
+            fix = "z-min"
+            load = [{{ region = "z-max", force = [["0 s", [0, 0, 0]], ["1 s", [0, 0, -60]]] }}]
+            "#
+        ));
+        let bar = built.bodies["bar"];
+        let error = loop {
+            match built.world.step() {
+                Ok(_) => {
+                    let report = built.world.body(bar).static_report().unwrap();
+                    let last = report.steps.last().unwrap();
+                    assert_eq!(last.share, 1.0);
+                    assert!(report.iterations() > 0 && report.steps.iter().all(|step| step.residuals.len() > 1));
+                    assert!(last.residuals[last.residuals.len() - 1] < 1e-6 * last.residuals[0], "{last:?}");
+                }
+                Err(error) => break error,
+            }
+            assert!(built.world.time() < 1.0, "nothing gave way");
+        };
+        let StepError::NoEquilibrium { error: StaticError::NoEquilibrium { body, law, load_factor, .. }, .. } = &error
+        else {
+            panic!("{error}");
+        };
+        assert_eq!((body.as_str(), *law), ("bar", "st-venant-kirchhoff"));
+        assert!((0.0..1.0).contains(load_factor) && error.to_string().contains("stable-neo-hookean"), "{error}");
+        // Free at its sides the law bears E A/√27 = 19 N, at a stretch of 1/√3; glued below it bears more.
+        let borne = 60.0 * (built.world.time() + 0.1 * load_factor);
+        assert!((19.0..38.0).contains(&borne), "{borne} N");
+        assert!(built.world.body(bar).static_report().is_none());
+    }
 }
 
 /// Every combination of the settings of `corotational` steps, on both kinds of cells, and its name and effect are its own: bars

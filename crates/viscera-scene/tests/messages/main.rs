@@ -47,6 +47,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("precision = \"double\"", "integrator = { kind = \"bdf2\", linear = { iterations = 0 } }"),
     ("precision = \"double\"", "integrator = { kind = \"bdf2\", matrix = \"free\" }"),
     ("precision = \"double\"", "integrator = { kind = \"bdf2\", preconditioner = \"jacobi\" }"),
+    ("precision = \"double\"", "integrator = { kind = \"quasi-static\", solver = \"cholesky\" }"),
     ("kind = \"tensor-mass\"", "kind = \"corotational\", rotation = \"quaternion\""),
     ("kind = \"tensor-mass\"", "kind = \"corotational\", strain-displacement = \"current\""),
     ("damping = 0.5", "stiffness-damping = \"0.5 1/s\""),

@@ -8,6 +8,7 @@ use super::{
 use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
 use crate::curve::Curve;
+use crate::dynamics::quasi_static::StaticReport;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
@@ -67,6 +68,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) answer: Option<Box<StaticAnswer>>,
     /// What of it follows the rest.
     pub(crate) followers: Option<Box<Followers>>,
+    /// How it came to rest the last time that an equilibrium was sought.
+    pub(crate) static_report: Option<StaticReport>,
 }
 
 impl<T: Scalar> SimulatedBody<T> {
@@ -182,6 +185,7 @@ impl<T: Scalar> SimulatedBody<T> {
             frequency,
             answer,
             followers,
+            static_report: None,
         })
     }
 
@@ -208,6 +212,12 @@ impl<T: Scalar> SimulatedBody<T> {
     /// The state: positions, velocities, forces, what is cut away.
     pub fn state(&self) -> &BodyState<T> {
         &self.state
+    }
+
+    /// How it came to rest in the last quasi-static step, or when it was settled: load steps and the residuals of each. None where no
+    /// equilibrium was sought, or the last was not found.
+    pub fn static_report(&self) -> Option<&StaticReport> {
+        self.static_report.as_ref()
     }
 
     /// Positions of the nodes [m].

@@ -26,6 +26,10 @@ pub struct Envelope {
 const NONE: u32 = u32::MAX;
 
 impl LinearSolver for Envelope {
+    fn factorises(&self) -> bool {
+        true
+    }
+
     fn analyse(&mut self, system: &System) {
         self.order = reverse_cuthill_mckee(system);
         self.places = vec![NONE; system.nodes()];

@@ -45,6 +45,10 @@ fn iterations(system: &System) -> u32 {
 }
 
 impl LinearSolver for Iterative {
+    fn factorises(&self) -> bool {
+        false
+    }
+
     fn analyse(&mut self, system: &System) {
         self.preconditioner = Some(BlockJacobi::new(system.nodes()));
     }

@@ -5,7 +5,10 @@ use crate::math::Vec3;
 ///
 /// The engine has [`Iterative`](super::Iterative), and [`Envelope`](super::Envelope) for a few thousand unknowns; a sparse
 /// Cholesky factorisation is in the crate `viscera-direct`, apart because it takes long to compile.
-pub trait LinearSolver: Sync {
+pub trait LinearSolver: Send + Sync {
+    /// Whether it factorises the matrix: right sides then cost little, and one that is not positive definite is noticed for sure.
+    fn factorises(&self) -> bool;
+
     /// Looks at which blocks and directions there are: once for all systems that share them.
     fn analyse(&mut self, system: &System);
 

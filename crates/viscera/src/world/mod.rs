@@ -28,6 +28,7 @@ use crate::dynamics::tied::TiedBodies;
 use crate::instrument::{Instrument, ToolState};
 use crate::math::Scalar;
 use crate::model::Precision;
+use crate::solver::{Iterative, LinearSolver};
 use attachment::Grown;
 use tools::ToolMotion;
 
@@ -45,6 +46,7 @@ pub struct World<T: Scalar> {
     bodies: Vec<SimulatedBody<T>>,
     /// Memory of implicit steps, one for each body; none if the world moves explicitly.
     implicit: Vec<ImplicitMemory<T>>,
+    static_solver: Box<dyn LinearSolver>,
     /// Instruments; nothing in the place of one that was taken out.
     instruments: Vec<Option<Box<dyn Instrument<T>>>>,
     /// The instruments as they are now.
@@ -70,6 +72,7 @@ impl<T: Scalar> World<T> {
             config,
             bodies: Vec::new(),
             implicit: Vec::new(),
+            static_solver: Box::new(Iterative::default()),
             instruments: Vec::new(),
             tools: Vec::new(),
             motion: ToolMotion::default(),

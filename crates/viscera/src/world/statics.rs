@@ -4,6 +4,29 @@ use crate::math::{Scalar, Vec3};
 use crate::solver::{LinearSolver, SolverError};
 
 impl<T: Scalar> World<T> {
+    /// What solves the linear systems of quasi-static steps: [`Iterative`](crate::solver::Iterative) to 1e-12, unless another was given.
+    pub fn static_solver(&self) -> &dyn LinearSolver {
+        self.static_solver.as_ref()
+    }
+
+    /// Lets `solver` solve the linear systems of quasi-static steps from now on: a factorisation, where stiffnesses are close to
+    /// singular, or a body has few thousand unknowns.
+    ///
+    /// ```
+    /// use viscera::dynamics::quasi_static::QuasiStatic;
+    /// use viscera::solver::Envelope;
+    /// use viscera::world::{Integrator, World, WorldConfig};
+    ///
+    /// let integrator = Integrator::QuasiStatic(QuasiStatic::default());
+    /// let mut world = World::<f64>::new(WorldConfig { integrator, ..WorldConfig::default() })?;
+    /// world.set_static_solver(Box::new(Envelope::default()));
+    /// assert!(world.static_solver().factorises());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_static_solver(&mut self, solver: Box<dyn LinearSolver>) {
+        self.static_solver = solver;
+    }
+
     /// Brings a body to rest under the world's gravity, its loads and prescribed motions as they are now. Time stands
     /// still. Panics for a number of another world.
     ///
@@ -42,6 +65,7 @@ impl<T: Scalar> World<T> {
         let (gravity, time) = (self.config.gravity, self.time());
         settings.solve(&mut self.bodies[id.0], gravity, time, solver)
     }
+
     /// How a body answers small `forces` [N] where it is, see [`respond`]: displacements [m] of its nodes for each of them, with the
     /// masses counting `inertia` times [1/s²; 0 for a body at rest]. Nothing moves. Panics for a number of another world.
     ///

@@ -29,7 +29,8 @@ pub struct StepReport {
     pub time: f64,
     /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it, or its full equations were not solved at once.
     pub substeps: u32,
-    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, or full equations were not solved.
+    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, or full equations were not solved;
+    /// between two equilibria, shares of the load that were tried in vain, of the body that took most.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,

@@ -8,7 +8,7 @@ use crate::dynamics::quasi_static::{Bodies, QuasiStatic, StaticReport};
 use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
-use crate::solver::Iterative;
+use crate::solver::LinearSolver;
 use crate::stage::{Stage, Stages};
 
 impl<T: Scalar> World<T> {
@@ -33,32 +33,40 @@ impl<T: Scalar> World<T> {
                 body.state.positions_changed();
             }
         }
-        let mut report = ImplicitReport::NOTHING;
+        let (mut report, mut retries) = (ImplicitReport::NOTHING, 0);
         for number in 0..self.bodies.len() {
             let Some(mut together) = Together::led_by(number, &mut self.tied) else { continue };
             if !self.bodies[number].moves() {
                 continue;
             }
-            let (bodies, mut solver) = match &mut together {
-                Together::Alone(number) => (Bodies::alone(&mut self.bodies[*number]), Iterative::default()),
-                Together::Tied(tied) => Bodies::tied(tied, &mut self.bodies),
+            let mut of_ties;
+            let (bodies, solver): (_, &mut dyn LinearSolver) = match &mut together {
+                Together::Alone(number) => (Bodies::alone(&mut self.bodies[*number]), self.static_solver.as_mut()),
+                Together::Tied(tied) => {
+                    let bodies;
+                    (bodies, of_ties) = Bodies::tied(tied, &mut self.bodies);
+                    (bodies, &mut of_ties)
+                }
             };
             let found = stages.run(Stage::Newton, || {
                 let target = |body: &_, node: usize| drive.target(body, node, body.state.positions[node]);
-                settings.solve_driven(bodies, gravity, span.to, target, &mut solver)
+                settings.solve_driven(bodies, gravity, span.to, target, solver)
             });
             if let Together::Tied(tied) = together {
                 tied.each_force(|number, force| self.attachments[number].impulse += force * self.config.step);
             }
             match found {
-                Ok(own) => report = report.worst(summary(&own)),
+                Ok(own) => {
+                    report = report.worst(summary(&own));
+                    retries = own.retries.max(retries);
+                }
                 Err(error) => return Err(StepError::NoEquilibrium { time: span.from, error }),
             }
         }
         for body in moving(&mut self.bodies) {
             account_for_holding(body, &self.motion.frames, span.to - span.from);
         }
-        Ok(Motion { substeps: 1, retries: 0, implicit: Some(report) })
+        Ok(Motion { substeps: 1, retries: retries as u32, implicit: Some(report) })
     }
 }
 

@@ -22,7 +22,7 @@ use crate::run::recording::Kept;
 
 const MARK: &[u8] = b"viscera checkpoint\n";
 /// Grows with every change of what is written.
-const FORMAT: u16 = 2;
+const FORMAT: u16 = 3;
 const CHECKSUM: usize = 4;
 
 /// The program that writes and reads: another one may compute other bits.

@@ -1,5 +1,6 @@
 //! Bodies whose equilibrium is one system of equations: one alone, or those that ties hold together.
 
+use super::StaticReport;
 use super::equilibrium::Widen;
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::dynamics::tied::TiedBodies;
@@ -31,6 +32,11 @@ impl<'a, T: Scalar> Bodies<'a, T> {
         let solver = Iterative::tied(ties.placed(&starts), ties.by_mass.clone());
         tied.ties = Some(ties);
         (tied, solver)
+    }
+
+    /// Says of each what was found.
+    pub(super) fn report(&mut self, report: Option<&StaticReport>) {
+        self.all.iter_mut().for_each(|body| body.static_report = report.cloned());
     }
 
     /// Where the nodes of each body begin.

@@ -15,7 +15,7 @@ const HALVINGS: usize = 14;
 
 /// Bodies on their way to the equilibrium.
 pub(super) struct Equilibrium<'a, T: Scalar> {
-    bodies: Bodies<'a, T>,
+    pub(super) bodies: Bodies<'a, T>,
     solver: &'a mut dyn LinearSolver,
     gravity: Vec3<T>,
     time: f64,

@@ -79,8 +79,8 @@ impl StaticReport {
 }
 
 impl QuasiStatic {
-    /// Brings a body to rest by itself, whatever it is attached to, under gravity [m/s²], its loads and prescribed motions as they are at `time` [s]. Velocities
-    /// become zero. Nodes that an instrument holds stay where they are.
+    /// Brings a body to rest by itself, whatever it is attached to, under gravity [m/s²], its loads and prescribed motions as they are at
+    /// `time` [s]. Velocities become zero. Nodes that an instrument holds stay where they are.
     ///
     /// # Errors
     /// [`StaticError`]; after [`StaticError::NoEquilibrium`] the body is in the last equilibrium that was found.
@@ -98,12 +98,13 @@ impl QuasiStatic {
     /// The same with the places of held nodes from `target`.
     pub(crate) fn solve_driven<T: Scalar>(
         &self,
-        bodies: Bodies<'_, T>,
+        mut bodies: Bodies<'_, T>,
         gravity: Vec3<T>,
         time: f64,
         target: impl Fn(&SimulatedBody<T>, usize) -> Option<Vec3<T>>,
         solver: &mut dyn LinearSolver,
     ) -> Result<StaticReport, StaticError> {
+        bodies.report(None);
         if let Some((name, value, range)) = self.first_out_of_range() {
             return Err(StaticError::OutOfRange { name, value, range });
         }
@@ -118,6 +119,7 @@ impl QuasiStatic {
         let mut equilibrium = Equilibrium::new(bodies, gravity, time, target, solver)?;
         let report = if self.small_strain { equilibrium.solve_once() } else { self.raise_load(&mut equilibrium) };
         equilibrium.come_to_rest();
+        equilibrium.bodies.report(report.as_ref().ok());
         report
     }
 
