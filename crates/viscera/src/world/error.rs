@@ -39,7 +39,7 @@ pub enum WorldError {
     /// The energy–momentum scheme needs a model that knows its forces between two places.
     #[error(
         "body `{body}`: the energy-momentum scheme does not work with the model `{model}` of the law `{law}`; take \
-         `total-lagrangian` tetrahedra of St Venant-Kirchhoff tissue without `keep-volume`, or another scheme"
+         `total-lagrangian` cells of St Venant-Kirchhoff tissue without `keep-volume`, or another scheme"
     )]
     NoMeanForces {
         /// Name of the body.

@@ -12,8 +12,8 @@ use super::super::block_sink::{add_block_column, unit_displacement};
 use super::super::block_table::BlockTable;
 use super::super::sections::{SectionScratch, Sections};
 use super::super::tet_loop::{gather_corner, scatter_corner};
-use super::super::{BlockSink, ForceModel, ModelError, Scratch};
-use super::TotalLagrangian;
+use super::super::{BlockSink, ForceModel, MeanForces, ModelError, Scratch};
+use super::{TotalLagrangian, hex_mean};
 use crate::material::{Law, LawFamily, Tissue};
 use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
@@ -24,10 +24,10 @@ pub(in crate::model) const POINT: usize = 25;
 /// Hexahedra in batches of lanes, of the law `L`.
 #[derive(Debug)]
 pub(super) struct HexLoop<T: Scalar, L> {
-    corners: BlockTable<u32>,
-    sections: Arc<Sections>,
-    points: BlockTable<T>,
-    parameters: BlockTable<T>,
+    pub(super) corners: BlockTable<u32>,
+    pub(super) sections: Arc<Sections>,
+    pub(super) points: BlockTable<T>,
+    pub(super) parameters: BlockTable<T>,
     point_count: usize,
     law: PhantomData<L>,
 }
@@ -133,7 +133,7 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
 const MAX_PARAMETERS: usize = 8;
 
 #[inline(always)]
-fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_PARAMETERS] {
+pub(super) fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_PARAMETERS] {
     let mut parameters = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_PARAMETERS];
     for column in 0..L::PARAMETERS.len() {
         parameters[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
@@ -218,6 +218,10 @@ impl<T: Scalar, L: LawFamily> ForceModel<T> for HexLoop<T, L> {
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         scratch.start(x);
         self.add_blocks_with(baseline(), &scratch.nodal, sink);
+    }
+
+    fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
+        hex_mean::keeps_energy::<L>().then_some(self)
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

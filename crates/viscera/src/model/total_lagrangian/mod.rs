@@ -5,6 +5,7 @@
 
 mod direct;
 pub(super) mod hex;
+mod hex_mean;
 mod metric;
 mod stable_neo_hookean;
 
