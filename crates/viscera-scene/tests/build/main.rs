@@ -252,9 +252,9 @@ fn a_load_beyond_what_the_law_bears_is_told_with_the_share_that_it_bore() {
         };
         assert_eq!((body.as_str(), *law), ("bar", "st-venant-kirchhoff"));
         assert!((0.0..1.0).contains(load_factor) && error.to_string().contains("stable-neo-hookean"), "{error}");
-        // Free at its sides the law bears E A/√27 = 19 N, at a stretch of 1/√3; glued below it bears more.
+        // Pressed evenly the law bears E A/√27 = 19 N; forces that are alike on all nodes press twice as hard on the corners.
         let borne = 60.0 * (built.world.time() + 0.1 * load_factor);
-        assert!((19.0..38.0).contains(&borne), "{borne} N");
+        assert!((9.6..19.3).contains(&borne), "{borne} N");
         assert!(built.world.body(bar).static_report().is_none());
     }
 }
