@@ -102,7 +102,8 @@ fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_me
         if !row.variant.is_neo_hookean() {
             continue;
         }
-        assert!(outcome.from_converged.mean < 0.7, "{:?}", outcome.from_converged);
+        // Read at the nodes themselves, 0.67 at the large strain.
+        assert!(outcome.from_converged.mean < 0.4, "{:?}", outcome.from_converged);
         if let Some(deviation) = outcome.from_measured {
             let published = [1.07, 1.47, 1.82][row.state];
             assert!((deviation.mean - published).abs() < 0.16, "{deviation:?}, not a mean of {published} %");
@@ -129,14 +130,14 @@ fn with_multigrid_iterations_do_not_grow_with_the_number_of_cells() {
     let found = multigrid::study(Size::Small).unwrap();
     for body in ["cantilever", "liver"] {
         let growth = |from: usize, iterations: &dyn Fn(&multigrid::Row) -> u32| {
-            let counts: Vec<f64> = found.of(body, 1.0).map(|row| f64::from(iterations(row))).collect();
+            let counts: Vec<f64> = found.of(body, false, 1.0).map(|row| f64::from(iterations(row))).collect();
             counts.last().unwrap() / counts[from]
         };
         assert!(growth(0, &|row| row.block_jacobi.iterations) > 1.8, "{body}: {:?}", found.rows);
         // A thousand cells have one lattice, which is solved: that is quicker than what more lattices settle at.
         assert!(growth(0, &|row| row.multigrid.iterations) < 1.5, "{body}: {:?}", found.rows);
         assert!(growth(1, &|row| row.multigrid.iterations) < 1.1, "{body}: {:?}", found.rows);
-        for (play, rest) in found.of(body, 0.01).zip(found.of(body, 1.0)) {
+        for (play, rest) in found.of(body, false, 0.01).zip(found.of(body, false, 1.0)) {
             assert!(10 * rest.multigrid.iterations < rest.block_jacobi.iterations, "{rest:?}");
             assert!(play.multigrid.iterations <= rest.multigrid.iterations, "{play:?}, {rest:?}");
         }

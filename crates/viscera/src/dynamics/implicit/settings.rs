@@ -52,8 +52,8 @@ pub enum Preconditioning {
     /// along the way of a wave in one step where that is shorter.
     #[default]
     BlockJacobi,
-    /// Multigrid on lattices over the body ([`Multigrid`](crate::solver::Multigrid)): as many iterations for a million cells
-    /// as for a thousand. One takes as long as six of the other, and each linear solve fifty more to begin with: it pays
+    /// Multigrid on lattices over the body ([`Multigrid`](crate::solver::Multigrid)): their number hardly grows with that of the
+    /// cells. One takes as long as six of the other, and each linear solve fifty more to begin with: it pays
     /// where block-Jacobi takes more than some 150. That is so for steps in which waves cross more than thirty cells
     /// or so, and for all that comes to rest.
     Multigrid,
