@@ -3,7 +3,7 @@ import { KEYS } from '../handling/keyboard';
 import { iconButton } from './button';
 
 const POINTER: readonly (readonly [string, string])[] = [
-  ['Press on tissue', 'the tool goes there and works: jaws close, the hook burns, a probe pushes'],
+  ['Press on tissue', 'the tool goes there and works: jaws close, the electrode burns, a probe pushes'],
   ['Drag', 'moves it in the plane of the picture'],
   [
     'Wheel while pressing, or with Alt',

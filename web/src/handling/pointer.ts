@@ -21,7 +21,7 @@ interface Drag {
 }
 
 /**
- * Mouse, pen and fingers. Pressed on tissue, the chosen tool goes there and works: jaws close, the hook burns, a probe pushes.
+ * Mouse, pen and fingers. Pressed on tissue, the chosen tool goes there and works: jaws close, the electrode burns, a probe pushes.
  * Dragging moves it in the plane that faces the eye, and the wheel or a second finger in depth. Pressed on a tool, it is taken
  * and moved without working; pressed where its shaft enters, that is moved. Everywhere else the camera turns.
  */

@@ -145,7 +145,7 @@ export class Tools {
     this.inHand()?.moveTo(tip);
   }
 
-  /** Ends work: jaws open and the hook cools, unless the trigger is latched. */
+  /** Ends work: jaws open and the electrode cools, unless the trigger is latched. */
   end(): void {
     const instrument = this.chosen;
     if (!instrument || !this.hand || this.latched) return;
@@ -193,7 +193,7 @@ export class Tools {
     return CLEARANCE * (this.session.scene?.radius ?? 1);
   }
 
-  /** How deep work goes: jaws enclose what they take, a hook sinks in, a probe presses. */
+  /** How deep work goes: jaws enclose what they take, an electrode sinks in, a probe presses. */
   private depthOf(instrument: SceneInstrument, point: Vector3, normal: Vector3, direction: Vector3): Vector3 {
     const radius = this.session.scene?.radius ?? 1;
     const { manner, parts, reach } = instrument;

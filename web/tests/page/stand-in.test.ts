@@ -286,6 +286,16 @@ test.describe('on a tablet', () => {
     expect(small).toEqual([]);
     expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth)).toBe(true);
     await page.screenshot({ path: 'tests/artefacts/stand-in-tablet.png' });
+    // Either way it is held, with depth strip and all, no tool hides under the edge of their list.
+    for (const size of [TABLET, { width: TABLET.height, height: TABLET.width }]) {
+      await page.setViewportSize(size);
+      const hidden = await page
+        .locator('.tools')
+        .evaluate((tools) => tools.scrollHeight - tools.clientHeight);
+      expect(hidden).toBeLessThanOrEqual(0);
+    }
+    await page.screenshot({ path: 'tests/artefacts/stand-in-tablet-upright.png' });
+    await page.setViewportSize(TABLET);
     await page.getByRole('button', { name: 'Show or hide the panel' }).click();
     await expect(page.locator('#panel')).toBeHidden();
   });

@@ -18,7 +18,7 @@ const USUAL_RADIUS: f64 = 0.15;
 /// Power of the cautery [W], as surgeons set it for cutting.
 const POWER: f64 = 60.0;
 /// Share of the heat of evaporation that a cell takes in before it goes. A real cut is a line: to evaporate the ten cells of 16 mm edges
-/// that the hook touches at once takes minutes, and with this share a seventh of a second.
+/// that the tip touches at once takes minutes, and with this share a seventh of a second.
 const HASTE: f64 = 5e-4;
 
 /// How fast a hand leads an instrument at most [m/s], in the time of the simulation. Without a bound, jaws that hold tissue tore at it with
@@ -73,7 +73,7 @@ pub(crate) fn entries() -> Vec<InstrumentEntry> {
             InstrumentKind::Probe => ("Probe", "A round rod that pushes tissue and slides along it.", ""),
             InstrumentKind::Grasper => ("Grasper", "Jaws that hold what they close on.", "closes the jaws"),
             InstrumentKind::Cautery => {
-                ("Cautery", "A hot hook that burns away what it stays on.", "switches the current on")
+                ("Cautery", "A hot tip that burns away what it stays on.", "switches the current on")
             }
         };
         InstrumentEntry {
