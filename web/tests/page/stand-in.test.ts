@@ -294,6 +294,11 @@ test.describe('on a tablet', () => {
         .evaluate((tools) => tools.scrollHeight - tools.clientHeight);
       expect(hidden).toBeLessThanOrEqual(0);
     }
+    const [tools, hint] = await Promise.all(
+      ['.tools', '.hint'].map((part) => page.locator(part).boundingBox()),
+    );
+    expect(hint!.x).toBeGreaterThanOrEqual(tools!.x + tools!.width);
+    expect(hint!.x + hint!.width).toBeLessThan(TABLET.height);
     await page.screenshot({ path: 'tests/artefacts/stand-in-tablet-upright.png' });
     await page.setViewportSize(TABLET);
     await page.getByRole('button', { name: 'Show or hide the panel' }).click();
