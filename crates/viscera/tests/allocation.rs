@@ -1,7 +1,7 @@
 //! A step asks for no memory, whatever happens in it: the first picture and the ten-thousandth take the same time.
 
 use allocation_counter::measure;
-use viscera::body::{Body, Load, LoosePieces, Muscle};
+use viscera::body::{Actuator, ActuatorLine, Body, Load, LoosePieces, Muscle};
 use viscera::curve::Curve;
 use viscera::dynamics::implicit::{Implicit, Newton, Preconditioning};
 use viscera::instrument::{Cautery, Grasper, Probe};
@@ -172,19 +172,33 @@ fn no_step_of_attached_bodies_allocates() {
     }
 }
 
-/// Volumes that are kept, rigid parts and muscles, while cells of them are cut away.
+/// Volumes that are kept, rigid parts, muscles, actuators and fields, while cells of them are cut away.
 #[test]
 fn no_step_with_constraints_allocates() {
     let linear = Tissue::uniform(LinearElastic::from_young_poisson(5e3, 0.4).unwrap());
     let side = |name: &str| Region::Named(name.into());
     let activation = Curve::piecewise_linear(vec![(0.0, 0.0), (0.2, 1.0)]).unwrap();
     let muscle = Muscle { region: side("y-min"), stiffness: 5.0, contraction: 0.3, activation };
+    let line = ActuatorLine::Between { from: side("z-min"), to: side("z-max") };
+    let one = || Curve::constant(1.0);
+    let actuator = Actuator { line, stiffness: 20.0, length: one(), tension: one() };
+    let line = ActuatorLine::Along { region: Region::All, direction: [0.0, 1.0, 1.0] };
+    let fibres = Actuator { line, stiffness: 500.0, length: one(), tension: one() };
     let body = Body::new(TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]), 1000.0)
         .model(ShapeMemory::new(linear))
         .damping(2.0)
         .fix(side("z-min"))
         .rigid(side("z-max"))
         .muscle(muscle)
+        .actuator(actuator)
+        .actuator(fibres)
+        .load(Load::BodyForce { region: Region::All, per_volume: Curve::constant(Vec3::new(0.0, 100.0, 0.0)) })
+        .load(Load::Attraction {
+            region: Region::All,
+            centre: [0.0; 3],
+            radius: 0.1,
+            per_volume: Curve::constant(50.0),
+        })
         .keep_volume_exactly("whole", Region::All)
         .keep_volume_exactly("half", Region::cuboid([-1.0; 3], [1.0, 1.0, 0.08]));
     let mut world = World::<f64>::new(WorldConfig::default()).unwrap();

@@ -58,7 +58,7 @@ pub enum BodyError {
     },
     /// What is pre-computed answers in proportion to what acts on it.
     #[error(
-        "body `{body}`: the model `{model}` knows neither volumes kept exactly nor rigid parts nor muscles; take a model that moves all of the body, such as `corotational`"
+        "body `{body}`: the model `{model}` knows neither volumes kept exactly nor rigid parts nor muscles nor actuators; take a model that moves all of the body, such as `corotational`"
     )]
     LinearModel {
         /// Name of the body.

@@ -1,9 +1,12 @@
 //! Bodies: what a user describes ([`Body`]), and what a world simulates ([`SimulatedBody`]).
 
+mod actuator;
 mod boundary;
 mod constrained;
 mod deformation;
 mod error;
+mod external;
+mod field;
 mod followers;
 mod guide;
 mod influence;
@@ -19,14 +22,17 @@ mod static_answer;
 mod stress;
 mod supports;
 
+pub(crate) use actuator::Actuators;
+pub use actuator::{Actuator, ActuatorLine};
 pub use boundary::SurfaceTriangle;
 pub use constrained::KeptVolumeNow;
 pub use error::BodyError;
+pub(crate) use external::ExternalStiffness;
 pub(crate) use followers::Followers;
 pub(crate) use guide::Guides;
 pub(crate) use influence::Drivers;
 pub use load::Load;
-pub(crate) use load::NodalLoads;
+pub(crate) use load::{LoadError, NodalLoads};
 pub(crate) use model_plan::{ModelPlan, Models};
 pub use muscle::Muscle;
 pub(crate) use muscle::Muscles;
@@ -78,6 +84,7 @@ pub struct Body {
     pub(crate) guided: Vec<(Region, [f64; 3], Curve<f64>)>,
     pub(crate) loads: Vec<Load>,
     pub(crate) muscles: Vec<Muscle>,
+    pub(crate) actuators: Vec<Actuator>,
     pub(crate) exact_volumes: Vec<(String, Region)>,
     pub(crate) rigid: Vec<Region>,
     pub(crate) loose_pieces: LoosePieces,
@@ -109,6 +116,7 @@ impl Body {
             guided: Vec::new(),
             loads: Vec::new(),
             muscles: Vec::new(),
+            actuators: Vec::new(),
             exact_volumes: Vec::new(),
             rigid: Vec::new(),
             loose_pieces: LoosePieces::default(),
@@ -193,6 +201,12 @@ impl Body {
     /// Adds a membrane of muscle. Explicit steps only.
     pub fn muscle(mut self, muscle: Muscle) -> Self {
         self.muscles.push(muscle);
+        self
+    }
+
+    /// Adds a linear actuator between two regions, or along a direction in the cells of one. Not for models that are pre-computed.
+    pub fn actuator(mut self, actuator: Actuator) -> Self {
+        self.actuators.push(actuator);
         self
     }
 

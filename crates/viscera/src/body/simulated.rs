@@ -2,14 +2,13 @@ use super::boundary::{Boundary, SurfaceTriangle};
 use super::skin::Skin;
 use super::supports::{filters, motions};
 use super::{
-    Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoosePieces, ModelPlan, Models, MotionBackup,
-    Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer,
+    Actuators, Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoadError, LoosePieces, ModelPlan,
+    Models, MotionBackup, Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer,
 };
 use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
 use crate::curve::Curve;
 use crate::dynamics::quasi_static::StaticReport;
-use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{VolumeMesh, cells_of_nodes};
@@ -46,6 +45,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) guides: Guides,
     pub(crate) loads: NodalLoads<T>,
     pub(crate) muscles: Muscles<T>,
+    pub(crate) actuators: Actuators<T>,
     pub(crate) constraints: Constraints,
     pub(crate) loose_pieces: LoosePieces,
     /// Cells at each node: those of node n are `cells_at_nodes.1[starts[n]..starts[n + 1]]`.
@@ -90,6 +90,7 @@ impl<T: Scalar> SimulatedBody<T> {
             guided,
             loads,
             muscles,
+            actuators,
             exact_volumes,
             rigid,
             loose_pieces,
@@ -116,10 +117,17 @@ impl<T: Scalar> SimulatedBody<T> {
         let Models { forces: models, frequency } = plan.build(&mesh).map_err(model_error)?;
         let region_error =
             |purpose| move |source| BodyError::Region { body: body(), purpose, source: Box::new(source) };
-        let loads = NodalLoads::new(&loads, &mesh).map_err(|(purpose, source)| region_error(purpose)(source))?;
+        let loads = NodalLoads::new(&loads, &mesh).map_err(|error| match error {
+            LoadError::Region(purpose, source) => region_error(purpose)(source),
+            LoadError::Radius(value) => {
+                let (name, range) = ("attraction radius", "positive [m], around a place of finite coordinates");
+                BodyError::OutOfRange { body: body(), name, value, range }
+            }
+        })?;
 
         let boundary = Boundary::new(&mesh);
         let muscles = Muscles::new(&name, muscles, &mesh, &boundary.faces)?;
+        let actuators = Actuators::new(&name, actuators, &mesh)?;
         let (constraints, volumes) =
             super::constrained::constraints(&name, exact_volumes, rigid, &mesh, &boundary.faces, &motions)?;
 
@@ -146,7 +154,7 @@ impl<T: Scalar> SimulatedBody<T> {
             check_range(&name, "stiffness damping", stiffness_damping, stiffness_damping == 0.0, rests)?;
         }
         if answer.is_some() || followers.is_some() {
-            if !(constraints.is_empty() && muscles.is_empty()) {
+            if !(constraints.is_empty() && muscles.is_empty() && actuators.is_empty()) {
                 return Err(BodyError::LinearModel { body: body(), model: recipe.kind() });
             }
             let linear = "zero: what is pre-computed is linear";
@@ -178,6 +186,7 @@ impl<T: Scalar> SimulatedBody<T> {
             guides,
             loads,
             muscles,
+            actuators,
             constraints,
             loose_pieces,
             cells_at_nodes,
@@ -367,24 +376,10 @@ impl<T: Scalar> SimulatedBody<T> {
     fn measure_squared_frequency(&mut self) -> f64 {
         let state = &self.state;
         let of_tissue = self.frequency.squared_frequency(&state.positions, &mut self.scratch);
-        of_tissue + self.muscles.squared_frequency(&state.masses, &state.removed, &mut self.scratch.forces)
-    }
-
-    /// Gravity, loads and muscles at `time` on the current positions [N].
-    pub(crate) fn update_external_forces(&mut self, time: f64, gravity: Vec3<T>) {
-        let masses = &self.state.masses;
-        let work = |block: usize, NodeBlocks(forces): NodeBlocks<'_, Vec3<T>>| {
-            for (force, &mass) in forces.iter_mut().zip(&masses[block * NODE_BLOCK..]) {
-                *force = gravity * mass;
-            }
-        };
-        self.scratch.executor.each(node_blocks(masses.len()), NodeBlocks(&mut self.external_forces), &work);
-        self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
-        self.muscles.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);
-        if let Some(followers) = &self.followers {
-            let drivers = Drivers { prescribed: &self.prescribed, guides: &self.guides, loads: &self.loads };
-            followers.condense(drivers, gravity.cast(), time, &mut self.external_forces);
-        }
+        let mut sums = std::mem::take(&mut self.scratch.forces);
+        let of_others = self.external_squared_frequency(&mut sums);
+        self.scratch.forces = sums;
+        of_tissue + of_others
     }
 }
 

@@ -148,7 +148,7 @@ impl<T: Scalar> BodyState<T> {
     pub(crate) fn reach(&self) -> Reach<'_> {
         let rings = self.models.iter().map(|model| model.rings()).max().unwrap_or(1);
         let coupled = self.models.iter().map(|model| model.coupled()).find(|coupled| !coupled.is_empty());
-        Reach { rings, coupled: coupled.unwrap_or(&[]) }
+        Reach { rings, coupled: coupled.unwrap_or(&[]), groups: &[] }
     }
 
     /// Says that the positions were changed: forces and frequency have to be found anew.

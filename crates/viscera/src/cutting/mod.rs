@@ -56,6 +56,7 @@ impl<T: Scalar> SimulatedBody<T> {
         self.frequency.remove(cells);
         state.positions_changed();
         self.cut_volumes();
+        self.update_actions();
         self.cut_skin(cells);
     }
 }

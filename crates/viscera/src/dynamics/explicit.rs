@@ -46,7 +46,7 @@ impl<T: Scalar> SimulatedBody<T> {
         let measure = || {
             let mut scratch = Scratch::new(positions.len());
             let of_tissue = self.frequency.squared_frequency(positions, &mut scratch);
-            of_tissue + self.muscles.squared_frequency(&self.state.masses, &self.state.removed, &mut scratch.forces)
+            of_tissue + self.external_squared_frequency(&mut scratch.forces)
         };
         stable_step(self.state.squared_frequency.unwrap_or_else(measure))
     }
@@ -103,7 +103,7 @@ pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, 
 pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     body.update_internal_forces(stages);
     // Weights do not change within a step.
-    if !(body.loads.is_empty() && body.muscles.is_empty()) {
+    if body.has_changing_forces() {
         stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));
     }
     stages.run(Stage::KickAndDrift, || kick_again(body, dt, drive));

@@ -83,11 +83,13 @@ pub struct Reach<'a> {
     pub rings: usize,
     /// Besides, all of these ([`ForceModel::coupled`](crate::model::ForceModel::coupled)).
     pub coupled: &'a [u32],
+    /// And all of each of these groups: what actuators join.
+    pub groups: &'a [Vec<u32>],
 }
 
 impl From<usize> for Reach<'_> {
     fn from(rings: usize) -> Self {
-        Self { rings, coupled: &[] }
+        Self { rings, coupled: &[], groups: &[] }
     }
 }
 
@@ -100,9 +102,11 @@ pub(super) fn pattern(mesh: &VolumeMesh, reach: Reach<'_>) -> Vec<Vec<u32>> {
         pattern = pattern.iter().map(beyond).collect();
         pattern.iter_mut().for_each(sort);
     }
-    for &node in reach.coupled {
-        pattern[node as usize].extend_from_slice(reach.coupled);
-        sort(&mut pattern[node as usize]);
+    for group in reach.groups.iter().map(Vec::as_slice).chain([reach.coupled]) {
+        for &node in group {
+            pattern[node as usize].extend_from_slice(group);
+            sort(&mut pattern[node as usize]);
+        }
     }
     pattern
 }

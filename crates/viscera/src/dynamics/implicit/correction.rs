@@ -3,7 +3,7 @@
 use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
-use crate::body::NodeMotion;
+use crate::body::{ExternalStiffness, NodeMotion};
 use crate::contact::Contacts;
 use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -35,6 +35,11 @@ impl<T: Scalar> Step<'_, T> {
         let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));
         let mass_factor =
             T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt) / stiffness;
+        let time = self.from + numbers.place * (self.drive.end - self.from);
+        // They are not damped as the tissue is.
+        let factor = 1.0 / (1.0 + alpha * numbers.velocity / dt);
+        self.memory.external = (time, factor);
+        let external = ExternalStiffness { loads: &self.body.loads, actuators: &self.body.actuators, time, factor };
         let (state, memory) = (&self.body.state, &mut *self.memory);
         let executor = self.body.scratch.executor.clone();
         let masses = (NodeBlocks(&mut memory.masses), ReadBlocks(&state.masses));
@@ -72,6 +77,7 @@ impl<T: Scalar> Step<'_, T> {
                     contacts.add_blocks(stiffness.to_f64(), |row, column, block| sink.add(row, column, block));
                 }
             }
+            external.for_diagonal(&state.positions, |node, block| memory.preconditioner.add(node, node, block));
             let rounding = rounding(memory, &state.positions, &executor);
             memory.preconditioner.invert(&memory.masses, &memory.filters, &executor);
             rounding
@@ -84,7 +90,7 @@ impl<T: Scalar> Step<'_, T> {
         let executor = self.body.scratch.executor.clone();
         let (state, memory) = (&self.body.state, &mut *self.memory);
         let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));
-        let stiffness = memory.stiffness;
+        let (stiffness, (time, factor)) = (memory.stiffness, memory.external);
         executor.each(node_blocks(memory.lack.len()), rhs, &|_, (NodeBlocks(rhs), ReadBlocks(lack))| {
             rhs.iter_mut().zip(lack).for_each(|(rhs, &lack)| *rhs = lack * (T::ONE / stiffness));
         });
@@ -93,6 +99,7 @@ impl<T: Scalar> Step<'_, T> {
             positions: &state.positions,
             scratch: &mut self.body.scratch,
             assembled: memory.matrix.as_mut(),
+            external: ExternalStiffness { loads: &self.body.loads, actuators: &self.body.actuators, time, factor },
             masses: &memory.masses,
             contacts: (&self.body.contacts, 1.0 / stiffness.to_f64()),
             stages: self.stages,

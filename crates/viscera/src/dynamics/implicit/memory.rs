@@ -32,6 +32,8 @@ pub struct ImplicitMemory<T> {
     pub(super) masses: Vec<T>,
     /// The factor of the stiffness, by which the linear system is divided.
     pub(super) stiffness: T,
+    /// When actuators and fields have the stiffness that counts [s], and how much it counts beside that of the tissue.
+    pub(super) external: (f64, f64),
     /// Forces that rounding of the positions makes [N].
     pub(super) rounding: f64,
     pub(super) filters: Vec<Filter<T>>,
@@ -68,6 +70,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             damping: zeros(),
             masses: vec![T::ZERO; nodes],
             stiffness: T::ONE,
+            external: (0.0, 1.0),
             rounding: 0.0,
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),

@@ -7,7 +7,8 @@
 //!
 //! M a + F(y) + C v_θ = R(y),   C = α K(y) + β M
 //!
-//! Newton's method solves that, with the matrix (r/Δt² + θ s β/Δt) M + θ (1 + α s/Δt) K(y). Not in the matrix: the change of α K
+//! Newton's method solves that, with the matrix (r/Δt² + θ s β/Δt) M + θ (1 + α s/Δt) K(y), and θ times the
+//! stiffness of actuators and force fields. Not in the matrix: the change of α K
 //! with the place, the stiffness of pressures that follow the surface, and the asymmetric part of the energy–momentum
 //! scheme, all of which vanish with Δt; the equation that is solved has them. One iteration of backward Euler from δ = 0 is
 //! the linearised step of Baraff and Witkin,

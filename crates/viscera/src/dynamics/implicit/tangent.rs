@@ -1,5 +1,5 @@
 use super::memory::ImplicitMemory;
-use crate::body::SimulatedBody;
+use crate::body::{ExternalStiffness, SimulatedBody};
 use crate::contact::Contacts;
 use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
@@ -14,6 +14,8 @@ pub(super) struct Tangent<'a, T: Scalar> {
     pub(super) scratch: &'a mut Scratch<T>,
     /// K, where it is assembled.
     pub(super) assembled: Option<&'a mut BlockMatrix<T>>,
+    /// Stiffness that the assembled matrix does not have.
+    pub(super) external: ExternalStiffness<'a, T>,
     pub(super) masses: &'a [T],
     /// Springs that the assembled matrix does not have, and one over the factor of the stiffness.
     pub(super) contacts: (&'a Contacts, f64),
@@ -23,7 +25,9 @@ pub(super) struct Tangent<'a, T: Scalar> {
 impl<'a, T: Scalar> Tangent<'a, T> {
     /// That of a body whose system is put together.
     pub(super) fn of(body: &'a mut SimulatedBody<T>, memory: &'a mut ImplicitMemory<T>, stages: Stages<'a>) -> Self {
+        let (time, factor) = memory.external;
         Self {
+            external: ExternalStiffness { loads: &body.loads, actuators: &body.actuators, time, factor },
             models: &body.state.models,
             positions: &body.state.positions,
             scratch: &mut body.scratch,
@@ -41,6 +45,7 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         if let Some(matrix) = &mut self.assembled {
             self.stages.run(Stage::Products("assembled-matrix"), || matrix.apply(x, out));
             add_weighted(&self.scratch.executor, out, masses, x);
+            self.external.add_product(self.positions, x, out);
             return;
         }
         set_weighted(&self.scratch.executor, out, masses, x);
@@ -49,6 +54,7 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
                 model.add_product(self.positions, x, self.scratch, out);
             });
         }
+        self.external.add_product(self.positions, x, out);
         let (contacts, scale) = self.contacts;
         contacts.add_product(scale, x, out);
     }
@@ -61,7 +67,7 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         out: &mut [Vec3<T>],
     ) -> f64 {
         match self.models {
-            [model] if self.assembled.is_none() && self.contacts.0.is_empty() => {
+            [model] if self.assembled.is_none() && self.contacts.0.is_empty() && self.external.is_empty() => {
                 let inertia = Inertia { masses: self.masses, filtered: *filtered };
                 self.stages.run(Stage::Products(model.name()), || {
                     model.product_with_masses(self.positions, x, &inertia, self.scratch, out)

@@ -59,7 +59,7 @@ impl<'a, T: Scalar> Bodies<'a, T> {
 
     /// The empty system of their stiffness.
     pub(super) fn system(&self) -> System {
-        let parts = self.all.iter().map(|body| BlockMatrix::new(&body.mesh, body.state.reach()));
+        let parts = self.all.iter().map(|body| BlockMatrix::new(&body.mesh, body.reach()));
         System {
             matrix: BlockMatrix::side_by_side(parts),
             filters: self.nodal(|body, node| body.free_directions(node).cast()),
@@ -89,7 +89,7 @@ impl<'a, T: Scalar> Bodies<'a, T> {
         self.all.iter_mut().for_each(|body| body.place_followers(time, gravity));
     }
 
-    /// The stiffness of the tissue, and of loads that follow the surface, of which a share is on.
+    /// The stiffness of the tissue, of loads that follow the surface, fields and actuators, of which a share is on.
     pub(super) fn assemble(&mut self, matrix: &mut BlockMatrix<f64>, time: f64, share: f64) {
         matrix.clear();
         let mut start = 0;
@@ -100,7 +100,7 @@ impl<'a, T: Scalar> Bodies<'a, T> {
                 model.linearize(&state.positions, &mut body.scratch);
                 model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
             }
-            body.loads.add_blocks(time, &state.positions, &state.removed, share, &mut sink);
+            body.add_external_blocks(time, share, &mut sink);
             start += state.positions.len() as u32;
         }
     }

@@ -11,8 +11,8 @@ use crate::model::BlockSink;
 use crate::solver::{BlockMatrix, LinearSolver, SolverError, System};
 use crate::stage::Stages;
 
-/// Displacements [m] of the nodes for each of `forces` [N, one vector for each node], with the stiffness of the tissue and of
-/// pressures at `time` [s], and masses that count `inertia` times [1/s², ≥ 0]. Forces on what is held have no effect.
+/// Displacements [m] of the nodes for each of `forces` [N, one vector for each node], with the stiffness of the tissue, of
+/// pressures, fields and actuators at `time` [s], and masses that count `inertia` times [1/s², ≥ 0]. Forces on what is held have no effect.
 ///
 /// # Errors
 /// [`SolverError::NotPositiveDefinite`] where the body is unstable, or nothing holds it; the others as the solver has them.
@@ -26,14 +26,14 @@ pub fn respond<T: Scalar>(
     body.update_internal_forces(Stages::unobserved());
     let state = &body.state;
     let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
-    let mut system = System { matrix: BlockMatrix::new(&body.mesh, state.reach()), filters };
+    let mut system = System { matrix: BlockMatrix::new(&body.mesh, body.reach()), filters };
     body.is_linearized = false;
     let (state, mut sink) = (&body.state, Widen { matrix: &mut system.matrix, start: 0 });
     for model in &state.models {
         model.linearize(&state.positions, &mut body.scratch);
         model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
     }
-    body.loads.add_blocks(time, &state.positions, &state.removed, 1.0, &mut sink);
+    body.add_external_blocks(time, 1.0, &mut sink);
     if inertia > 0.0 {
         for (node, mass) in state.masses.iter().enumerate() {
             system.matrix.add(node as u32, node as u32, Mat3::diagonal(inertia * mass.to_f64()));

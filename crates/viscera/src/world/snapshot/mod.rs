@@ -61,6 +61,7 @@ impl<T: Scalar> World<T> {
             body.is_linearized = false;
             body.frequency = of_body.frequency.clone_box();
             body.constraints.update(&body.state.removed);
+            body.update_actions();
             body.update_skin();
         }
         self.tools.iter_mut().zip(&snapshot.tools).for_each(|(tool, &(_, kept))| *tool = kept);
