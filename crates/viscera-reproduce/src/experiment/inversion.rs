@@ -133,9 +133,9 @@ const MODELS: [Candidate; 10] = [
     ),
     candidate(
         SHAPE_MEMORY,
-        Theory::Silent,
-        "A node's place is on the side of its neighbours on which it was at rest; but an inner node rests at their centroid, and only borders \
-         draw such a region back. Out of disorder each node may find its place among neighbours that stand in a twist.",
+        Theory::Back,
+        "A node's place is on the side of its neighbours on which it was at rest, and the neighbours have their shape, turned by a rotation that is \
+         right-handed inside out as well.",
         Some("shape-memory"),
         || Ok(Box::new(ShapeMemory::new(linear()?))),
     ),
@@ -274,8 +274,8 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
     let mut section = Section::new(
         "A bar is pushed through its own foot, so that every cell is inside out, and let go; then once more from a heap in which every \
          node is at a random place. Rotations by polar decomposition, QR and SVD bring the bar back. St Venant–Kirchhoff's law \
-         and a net of springs cannot tell a cell from its mirror image and leave it inside out. Shape memory brings back most \
-         of what the net leaves, and not all.",
+         and a net of springs cannot tell a cell from its mirror image and leave it inside out. Shape memory brings back \
+         what the net leaves.",
     )
     .setting("bar", format!("5 × 5 × 10 cm, {} tetrahedra, held at its foot", mesh.cells.len()))
     .setting("tissue", format!("E = {} kPa, ν = {POISSON}, damping {DAMPING} 1/s", YOUNG / 1e3))

@@ -127,7 +127,7 @@ impl<T: Scalar> FrequencyBound<T> for MemoryBound {
             let all = stiffness * (1.0 + nodes.entries(node).map(&reach).sum::<f64>());
             add(node, all);
             for entry in nodes.entries(node) {
-                add(nodes.neighbour(entry), all * reach(entry));
+                add(nodes.neighbour(entry), all * reach(entry) + nodes.nodes[node].grip);
             }
         }
         scratch.forces.iter().map(|row| row[0].to_f64()).fold(0.0, f64::max)

@@ -32,6 +32,8 @@ pub(super) struct Remembered<R> {
     pub(super) offset: Vec3<R>,
     /// k [N/m].
     pub(super) stiffness: R,
+    /// g [N/m], of each neighbour.
+    pub(super) grip: R,
     /// One over the longest rest arm [1/m].
     pub(super) unit: R,
     /// How well shaped the neighbours are at rest, see [`well_shaped`].
@@ -48,6 +50,8 @@ pub(super) struct Hold<R> {
     pub(super) rotation: Mat3<R>,
     /// β of the arms b_j = (1 − β) Y_j + β Rᵀy_j.
     pub(super) mix: R,
+    /// g [N/m] of the forces g (y_j − R Y_j) on the neighbours.
+    pub(super) grip: R,
 }
 
 impl<R: Real> Hold<R> {
@@ -66,15 +70,21 @@ impl<R: Real> Hold<R> {
         let inertia = Sym3::diagonal(turned.trace()) - turned;
         let matrix = gradient * (one - mix) + inertia * mix;
         let local = rotation.transpose_mul(force);
-        Self { force, spin: solve(&matrix, local.cross(rest.offset * rest.unit) * rest.unit), rotation, mix }
+        Self {
+            force,
+            spin: solve(&matrix, local.cross(rest.offset * rest.unit) * rest.unit),
+            rotation,
+            mix,
+            grip: rest.grip,
+        }
     }
 
-    /// The turning part of the force on a neighbour with the rest arm Y, at y from the centroid [N].
+    /// The force on a neighbour besides its share of the node's, with the rest arm Y, at y from the centroid [N].
     #[inline(always)]
     pub(super) fn turn(&self, arm: Vec3<R>, y: Vec3<R>) -> Vec3<R> {
         let one = self.mix.like(1.0);
         let mixed = arm * (one - self.mix) + self.rotation.transpose_mul(y) * self.mix;
-        self.rotation * self.spin.cross(mixed)
+        self.rotation * self.spin.cross(mixed) + (y - self.rotation * arm) * self.grip
     }
 }
 

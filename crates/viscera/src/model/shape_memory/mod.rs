@@ -1,6 +1,6 @@
 //! Shape memory: every node knows its place among its neighbours, and is drawn there.
 //!
-//! T_i = c_i + R_i d_i,   W = Σ_i ½ k_i |x_i − T_i|²
+//! T_i = c_i + R_i d_i,   W = Σ_i ½ k_i |x_i − T_i|² + Σ_i ½ g_i Σ_j |y_j − R_i Y_j|²,   g_i = k_i/n
 //!
 //! The neighbours of node i are those that share an edge of a cell with it, c_i their centroid, and R_i the rotation that
 //! fits their rest places to where they are best: the polar rotation of Σ_j y_j Y_jᵀ, with y_j and Y_j counted from the
@@ -10,22 +10,24 @@
 //! The force k_i (T_i − x_i) on a node has its opposite on the neighbours. Shared equally, it would leave a torque; as the
 //! gradient of W it leaves none:
 //!
-//! f_i = k_i (x_i − T_i),   f_j = −f_i/n + R_i (s_i × Y_j),   (tr S I − S) s_i = (R_iᵀ f_i) × d_i,   S = R_iᵀ Σ_j y_j Y_jᵀ
+//! f_i = k_i (x_i − T_i),   f_j = −f_i/n + R_i (s_i × Y_j) + g_i (y_j − R_i Y_j),   (tr S I − S) s_i = (R_iᵀ f_i) × d_i,   S = R_iᵀ Σ_j y_j Y_jᵀ
 //!
 //! Where neighbours are squeezed into a line, or turned inside out alike along two axes, R_i jumps, and W with it. There
 //! Y_j gives way to R_iᵀ y_j on both sides of the last equation: such forces still balance, and stay bounded, but have no energy.
 //!
-//! k_i = (Σ_c E_c V_c)/V^⅔ with the corners' shares V_c of the cells around the node, V their sum: E V^⅓ in uniform tissue. This
-//! is no law of matter. Where tissue deforms alike everywhere an inner node on a regular mesh stays on its target and resists
-//! nothing; what is resisted is a change of shape from place to place, and more of it on a finer mesh at the same E. So it sags
-//! under weight as no solid does.
+//! The second sum of W holds the neighbours in their shape. As R_i is where it is least, a change of R_i adds nothing to its gradient,
+//! and where R_i jumps it has a kink and no step. It is what turns inner nodes back that are inside out among neighbours that are so too, at
+//! whose centroid they stand on either side.
 //!
-//! A layer of cells that is dragged inside out comes back, where a net of springs stays folded. Deeper disorder turns most cells
-//! right side out again, but may end in a twist: of a liver of 985 cells that two handles drag through itself, 16 stay inside
-//! out, 549 in the net.
+//! k_i = (Σ_c E_c V_c)/V^⅔ with the corners' shares V_c of the cells around the node, V their sum: E V^⅓ in uniform tissue. This
+//! is no law of matter: how much is resisted hangs on the mesh, and a change of volume is no dearer than one of shape.
+//!
+//! Bars that were pushed through their own foot, or of which every node was put to a random place, come back whole, where a net of springs
+//! stays folded.
 //!
 //! Source: Promayon, Baconnier, Puech (1996), and Nesme, Marchal, Promayon, Chabanas, Payan, Faure (2005), section 4, for
-//! points that remember their place among their neighbours; frame and balance are ours, as the papers give neither.
+//! points that remember their place among their neighbours; frame and balance are ours, as the papers give neither. Müller, Heidelberger,
+//! Teschner, Gross (2005) for the shape of neighbours under the rotation that fits them best.
 
 mod bound;
 mod memory;

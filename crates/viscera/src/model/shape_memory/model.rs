@@ -124,13 +124,13 @@ impl<R: Copy> Held<R> {
         let Self { hold, centre } = self;
         let (force, spin, [a, b, c]) = (hold.force, hold.spin, hold.rotation.columns);
         let with = |v: Vec3<R>, last| [v.x, v.y, v.z, last];
-        [with(force, hold.mix), with(spin, hold.mix), with(a, centre.x), with(b, centre.y), with(c, centre.z)]
+        [with(force, hold.mix), with(spin, hold.grip), with(a, centre.x), with(b, centre.y), with(c, centre.z)]
     }
 
     fn from_rows([force, spin, a, b, c]: &[[R; 4]; ROWS]) -> Self {
         let vector = |&[x, y, z, _]: &[R; 4]| Vec3 { x, y, z };
         let rotation = Mat3 { columns: [vector(a), vector(b), vector(c)] };
-        let hold = Hold { force: vector(force), spin: vector(spin), rotation, mix: force[3] };
+        let hold = Hold { force: vector(force), spin: vector(spin), rotation, mix: force[3], grip: spin[3] };
         Self { hold, centre: Vec3 { x: a[3], y: b[3], z: c[3] } }
     }
 }
@@ -223,7 +223,13 @@ impl<T: Scalar> ForceModel<T> for Neighbourhoods<T> {
         let of = |node: usize| {
             let at = |entry: usize| place(self.neighbour(entry)) - place(node);
             let held = self.held(node, at, T::to_f64, polar)?;
-            Some(0.5 * held.hold.force.squared_norm() / self.nodes[node].stiffness.to_f64())
+            let astray = |entry: usize| {
+                let arm = self.arms[entry].cast::<f64>();
+                (at(entry) - held.centre - held.hold.rotation * arm).squared_norm()
+            };
+            let around: f64 = self.entries(node).map(astray).sum();
+            let own = held.hold.force.squared_norm() / self.nodes[node].stiffness.to_f64();
+            Some(0.5 * (own + held.hold.grip * around))
         };
         (0..x.len()).filter_map(of).sum()
     }
