@@ -64,8 +64,9 @@ quantities! {
     Time = TIME, "A time [s].";
     Density = DENSITY, "A density [kg/m³].";
     Pressure = PRESSURE, "A pressure, stress or stiffness [Pa].";
-    MembraneStiffness = MEMBRANE_STIFFNESS, "A stiffness of a membrane [N/m].";
+    Stiffness = STIFFNESS, "A stiffness of a spring or a membrane [N/m].";
     Force = FORCE, "A force [N].";
+    ForceDensity = FORCE_DENSITY, "A force for each volume [N/m³].";
     Acceleration = ACCELERATION, "An acceleration [m/s²].";
     Angle = ANGLE, "An angle [rad].";
     Rate = RATE, "A rate [1/s].";

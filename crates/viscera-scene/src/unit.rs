@@ -38,9 +38,13 @@ dimensions! {
         "Pa" = 1.0, 1.0; "kPa" = 1e3, 1.0; "MPa" = 1e6, 1.0; "GPa" = 1e9, 1.0; "N/m^2" = 1.0, 1.0; "N/m²" = 1.0, 1.0;
         "mmHg" = 133.322_387_415, 1.0;
     }
-    MEMBRANE_STIFFNESS = "membrane stiffness" { "N/m" = 1.0, 1.0; "N/mm" = 1e3, 1.0; "mN/m" = 1.0, 1e3; }
+    STIFFNESS = "stiffness" { "N/m" = 1.0, 1.0; "N/mm" = 1e3, 1.0; "mN/m" = 1.0, 1e3; }
     FORCE = "force" { "N" = 1.0, 1.0; "mN" = 1.0, 1e3; "kN" = 1e3, 1.0; }
     ACCELERATION = "acceleration" { "m/s^2" = 1.0, 1.0; "m/s²" = 1.0, 1.0; }
+    FORCE_DENSITY = "force density" {
+        "N/m^3" = 1.0, 1.0; "N/m³" = 1.0, 1.0; "kN/m^3" = 1e3, 1.0; "kN/m³" = 1e3, 1.0; "N/cm^3" = 1e6, 1.0;
+        "N/cm³" = 1e6, 1.0;
+    }
     ANGLE = "angle" { "rad" = 1.0, 1.0; "deg" = PI, 180.0; "°" = PI, 180.0; }
     RATE = "rate" { "1/s" = 1.0, 1.0; "s^-1" = 1.0, 1.0; "Hz" = 1.0, 1.0; }
     POWER = "power" { "W" = 1.0, 1.0; "mW" = 1.0, 1e3; "kW" = 1e3, 1.0; }
@@ -180,6 +184,7 @@ mod tests {
             (&DENSITY, "1.06 g/cm³", 1060.0),
             (&FORCE, "-12 mN", -0.012),
             (&ACCELERATION, "9.81 m/s^2", 9.81),
+            (&FORCE_DENSITY, "2.5 kN/m^3", 2500.0),
             (&ANGLE, "180 deg", PI),
             (&RATE, "5 1/s", 5.0),
             (&POWER, "40 W", 40.0),

@@ -25,11 +25,13 @@ pub const FILES: &[(&str, &[u8])] = files![
     "liver-pull.toml",
     "liver-resection.toml",
     "liver.toml",
+    "magnet.toml",
     "meshes/gallbladder.obj",
     "paths/liver-resection.csv",
     "recordings/edge-cut.viscera-recording",
     "recordings/lobe-pulled.viscera-recording",
     "scene.schema.json",
+    "soft-arm.toml",
 ];
 
 /// The scene with which a session begins: nothing happens in it until a hand does something.

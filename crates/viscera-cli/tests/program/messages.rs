@@ -194,7 +194,9 @@ fn every_built_in_scene_is_listed_in_one_line_and_can_be_copied() {
             "liver-probe",
             "liver-pull",
             "liver-resection",
-            "liver"
+            "liver",
+            "magnet",
+            "soft-arm"
         ]
     );
     desk.viscera(&["scenes", "--copy-to", "mine"]).ends_with(0).says("mine");

@@ -1,10 +1,8 @@
-use viscera::body::{Body, BodyError, Load, LoosePieces, Muscle};
-use viscera::curve::Curve;
-use viscera::math::Vec3;
-use viscera::mesh::{Region, VolumeMesh};
+use viscera::body::{Body, BodyError, LoosePieces, Muscle};
 use viscera::model::ModelError;
 use viscera::model::precomputed::ResponsesError;
 
+use super::action::act;
 use super::curve::curve;
 use super::law::{densities, tissue};
 use super::mesh::{Meshes, PlacedMesh};
@@ -12,7 +10,7 @@ use super::model::recipe;
 use super::region::{Wanted, region};
 use super::site::Site;
 use crate::error::SceneErrors;
-use crate::file::{BodyFile, LoadFile, LoosePiecesFile};
+use crate::file::{BodyFile, LoosePiecesFile};
 
 /// The body, and what a person should know about its mesh.
 pub(super) fn body(
@@ -75,38 +73,8 @@ pub(super) fn body(
             activation: curve(&muscle.activation, &site.key("activation"))?,
         });
     }
-    for (index, load) in file.load.iter().enumerate() {
-        body = body.load(self::load(load, &mesh, &site.key("load").key(index))?);
-    }
+    body = act(body, file, &mesh, site)?;
     Ok((body, notices))
-}
-
-fn load(file: &LoadFile, mesh: &VolumeMesh, site: &Site) -> Result<Load, SceneErrors> {
-    let part = |wanted| region(&file.region, wanted, mesh, &site.key("region"));
-    if let Some(force) = &file.force {
-        return Ok(Load::Force { region: part(Wanted::Nodes)?, total: curve(force, &site.key("force"))? });
-    }
-    if let Some(force) = &file.force_per_node {
-        let region = part(Wanted::Nodes)?;
-        let each = curve(force, &site.key("force-per-node"))?;
-        return Ok(Load::Force { total: times(&each, count(&region, mesh, site)?, site)?, region });
-    }
-    if let Some(pressure) = &file.pressure {
-        return Ok(Load::Pressure { region: part(Wanted::Faces)?, pressure: curve(pressure, &site.key("pressure"))? });
-    }
-    let Some(traction) = &file.traction else {
-        return Err(site.error("the load has no size", "give `force`, `force-per-node`, `pressure` or `traction`"));
-    };
-    Ok(Load::Traction { region: part(Wanted::Faces)?, traction: curve(traction, &site.key("traction"))? })
-}
-
-fn count(region: &Region, mesh: &VolumeMesh, site: &Site) -> Result<usize, SceneErrors> {
-    region.nodes(mesh).map(|nodes| nodes.len()).map_err(|error| site.key("region").error(error, ""))
-}
-
-fn times(curve: &Curve<Vec3<f64>>, count: usize, site: &Site) -> Result<Curve<Vec3<f64>>, SceneErrors> {
-    let points = curve.points().iter().map(|&(time, force)| (time, force * count as f64)).collect();
-    Curve::piecewise_linear(points).map_err(|error| site.key("force-per-node").error(error, ""))
 }
 
 /// The key of a body that an error of the engine is about.
@@ -132,6 +100,9 @@ pub(super) fn blame(error: &BodyError, site: &Site) -> SceneErrors {
         | BodyError::RigidPartInLine { .. } => site.key("rigid"),
         BodyError::OutOfRange { name, .. } if name.starts_with("muscle") => site.key("muscle"),
         BodyError::Region { purpose: "a muscle", .. } => site.key("muscle"),
+        BodyError::OutOfRange { name, .. } if name.starts_with("actuator") => site.key("actuator"),
+        BodyError::OutOfRange { name, .. } if name.starts_with("active fibre") => site.key("active-fibre"),
+        BodyError::OutOfRange { name: "attraction radius", .. } => site.key("load"),
         BodyError::OutOfRange { name: "keep-volume", .. } => site.key("model").key("keep-volume"),
         BodyError::OutOfRange { name, .. } => site.key(name.replace(' ', "-")),
         BodyError::WrongDensityCount { .. } => site.key("density"),

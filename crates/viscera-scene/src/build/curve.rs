@@ -5,7 +5,7 @@ use super::csv;
 use super::site::Site;
 use crate::error::SceneErrors;
 use crate::file::CurveFile;
-use crate::quantity::{Length, Pressure, Quantity};
+use crate::quantity::{Force, ForceDensity, Length, Pressure, Quantity};
 use crate::unit::{Dimension, TIME};
 
 /// A value of a curve as it stands in a scene.
@@ -44,7 +44,7 @@ macro_rules! written {
     )+};
 }
 
-written!(Length, Pressure);
+written!(Length, Pressure, Force, ForceDensity);
 
 impl Written for f64 {
     type Plain = Self;

@@ -1,5 +1,6 @@
 //! From a checked scene to a world.
 
+mod action;
 mod attachment;
 mod body;
 mod csv;

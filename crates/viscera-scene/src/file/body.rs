@@ -1,8 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CurveFile, LawFile, MeshFile, ModelFile, PlaceFile, RegionFile};
-use crate::quantity::{Density, Force, Length, MembraneStiffness, Pressure, Rate, Time};
+use super::{ActiveFibreFile, ActuatorFile, CurveFile, LawFile, LoadFile, MeshFile, ModelFile, PlaceFile, RegionFile};
+use crate::quantity::{Density, Length, Rate, Stiffness, Time};
 
 /// A body of tissue.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -57,6 +57,12 @@ pub struct BodyFile {
     /// Membranes of muscle; the explicit integrator only.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub muscle: Vec<MuscleFile>,
+    /// Linear actuators between two regions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub actuator: Vec<ActuatorFile>,
+    /// Linear actuators in the cells of a region, along a direction.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub active_fibre: Vec<ActiveFibreFile>,
     /// What pulls and pushes on it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<LoadFile>,
@@ -134,7 +140,7 @@ pub struct MuscleFile {
     pub region: RegionFile,
     /// Young's modulus times thickness [N/m].
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub stiffness: MembraneStiffness,
+    pub stiffness: Stiffness,
     /// The share of their length by which edges shorten at full activation.
     #[schemars(extend("minimum" = 0, "exclusiveMaximum" = 1))]
     pub contraction: f64,
@@ -151,30 +157,6 @@ pub struct PrescribeFile {
     pub region: RegionFile,
     /// How far they are from their place at rest [m].
     pub displacement: CurveFile<[Length; 3]>,
-}
-
-/// A load. Give one of `force`, `force-per-node`, `pressure`, `traction`.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(
-    title = "load",
-    extend("x-exactly-one-of" = [["force"], ["force-per-node"], ["pressure"], ["traction"]])
-)]
-pub struct LoadFile {
-    /// Where it acts.
-    pub region: RegionFile,
-    /// Total force, shared equally by the nodes of the region [N].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub force: Option<CurveFile<[Force; 3]>>,
-    /// Force on every node of the region [N].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub force_per_node: Option<CurveFile<[Force; 3]>>,
-    /// Pressure on the surface in the region, positive inwards [Pa]; it follows the surface.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<CurveFile<Pressure>>,
-    /// Force per area on the surface in the region [Pa], in a direction that stays.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub traction: Option<CurveFile<[Pressure; 3]>>,
 }
 
 fn is_zero(time: &Time) -> bool {

@@ -3,6 +3,7 @@
 //! A new key is one field here. Its doc comment, type, dimension and range become the schema; editors, the check and its
 //! messages follow from that. `exclusiveMinimum` and the like hold for the value in SI.
 
+mod action;
 mod body;
 mod curve;
 mod instrument;
@@ -19,8 +20,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Acceleration, Time};
 
+pub use action::{ActiveFibreFile, ActuatorFile, AttractionFile, LoadFile};
 pub use body::{
-    AttachFile, BodyFile, ExactVolumeFile, LoadFile, LoosePiecesFile, MuscleFile, PartFile, PrescribeFile, SlideFile,
+    AttachFile, BodyFile, ExactVolumeFile, LoosePiecesFile, MuscleFile, PartFile, PrescribeFile, SlideFile,
 };
 pub use curve::{CurveFile, CurvePath};
 pub use instrument::{InstrumentFile, JawsFile, ShaftFile};
