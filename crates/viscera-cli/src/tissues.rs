@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use viscera::material::{Measured, TissuePreset};
+use viscera::material::{Evidence, Measured, TissuePreset};
 
 use crate::arguments::TissuesArguments;
 use crate::failure::Failure;
@@ -69,6 +69,7 @@ fn in_full(preset: &TissuePreset) -> String {
     for (name, unit, number) in numbers(preset) {
         let _ = write!(text, "\n\n{name}: {}, reported {}", quantity(number.value, unit), range(&number, unit));
         let _ = write!(text, "\n  tissue  {}\n  state   {}\n  source  {}", number.species, number.state, number.source);
+        let _ = write!(text, "\n  value   {}", number.evidence.words());
         if let Some(weakness) = number.weakness {
             let _ = write!(text, "\n  weak    {weakness}");
         }
@@ -82,9 +83,10 @@ fn chapter(preset: &TissuePreset) -> String {
     text.push_str("| | value | reported | tissue and state | source |\n|---|---|---|---|---|\n");
     for (name, unit, number) in numbers(preset) {
         let weak = number.weakness.map_or(String::new(), |weakness| format!("; **weak data**: {weakness}"));
+        let cited = if number.evidence == Evidence::Cited { "; **as cited**" } else { "" };
         let _ = writeln!(
             text,
-            "| {name} | {} | {} | {}; {}{weak} | {} |",
+            "| {name} | {} | {} | {}; {}{cited}{weak} | {} |",
             quantity(number.value, unit),
             range(&number, unit),
             number.species,

@@ -1,6 +1,6 @@
 //! Tissues as they were measured: their numbers say where they come from, and their laws do what the numbers say.
 
-use viscera::material::{LawFamily, LawVisitor, Measured, Tissue, TissuePreset};
+use viscera::material::{Evidence, LawFamily, LawVisitor, Measured, Tissue, TissuePreset};
 use viscera::math::{Mat3, Vec3};
 
 /// Fibres along x: the axes are then axes of symmetry of every tissue.
@@ -14,13 +14,30 @@ fn numbers(preset: &TissuePreset) -> Vec<Measured> {
 #[test]
 fn every_number_lies_in_its_range_and_says_where_it_comes_from() {
     for preset in TissuePreset::ALL {
-        for Measured { value, range: (least, most), source, species, state, weakness } in numbers(preset) {
+        for Measured { value, range: (least, most), source, species, state, weakness, .. } in numbers(preset) {
             assert!(0.0 < least && least <= value && value <= most, "{}: {value} not in {least}..{most}", preset.name);
             let year = |text: &str| (1950..2030).any(|year| text.contains(&year.to_string()));
             let named = TissuePreset::ALL.iter().any(|other| source.contains(other.name));
             assert!(year(source) || named, "{}: no year in {source}", preset.name);
             assert!(!species.is_empty() && !state.is_empty() && weakness != Some(""), "{}", preset.name);
         }
+    }
+}
+
+/// What was not read where it was published is told: nothing is as strong as it looks only because it has a source.
+#[test]
+fn numbers_that_were_chosen_say_why_and_elastography_was_read() {
+    for preset in TissuePreset::ALL {
+        for number in numbers(preset) {
+            let chosen = number.evidence == Evidence::Chosen;
+            assert!(!chosen || number.weakness.is_some(), "{}: chosen without a reason: {number:?}", preset.name);
+        }
+        assert_ne!(preset.density.evidence, Evidence::Read, "{}: densities are tabulated", preset.name);
+    }
+    for name in ["liver", "kidney", "spleen", "artery"] {
+        let preset = TissuePreset::named(name).unwrap();
+        let number = preset.fibre.map_or(preset.young, |fibre| fibre.young);
+        assert_eq!(number.evidence, Evidence::Read, "{name}");
     }
 }
 

@@ -16,6 +16,7 @@ fn tissues_are_listed_with_their_stiffness_and_told_in_full_with_their_sources()
     desk.viscera(&["tissues", "muscle"])
         .ends_with(0)
         .says("Young's modulus along the muscle fibres: 447 kPa, reported 349 kPa to 545 kPa")
+        .says("  value   as commonly cited; the source itself was not consulted")
         .says("  weak    the curve is flat before it is steep");
 }
 

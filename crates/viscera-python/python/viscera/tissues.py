@@ -23,6 +23,8 @@ class Measured:
     species: str
     #: In what state it was, and how it was measured.
     state: str
+    #: How the value came here: "read" in the source, "cited" as others cite it, or "chosen".
+    evidence: str
     #: Why the number is weak, where it is.
     weakness: str | None
 

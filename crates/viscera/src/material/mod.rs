@@ -21,7 +21,7 @@ pub use lame::Lame;
 pub use linear::LinearElastic;
 pub use neo_hookean::NeoHookean;
 pub use parameter::{Parameter, ParameterRange};
-pub use preset::{FibrePreset, Measured, TissuePreset};
+pub use preset::{Evidence, FibrePreset, Measured, TissuePreset};
 pub use registry::{LawKind, LawVisitor};
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;

@@ -4,7 +4,7 @@
 //! The fibres resist compression as they do tension, and buckle: pressed along them by a strain of more than about μ/2κ_a
 //! the tissue gives way sideways, muscle and skin at 2 %. What is squeezed is better computed without them.
 
-use super::{FibrePreset, KEEPS_TRACE, Measured, TissuePreset};
+use super::{Evidence, FibrePreset, KEEPS_TRACE, Measured, TissuePreset};
 use crate::material::LawKind;
 
 const fn density(value: f64, range: (f64, f64), weakness: Option<&'static str>) -> Measured {
@@ -15,6 +15,7 @@ const fn density(value: f64, range: (f64, f64), weakness: Option<&'static str>) 
                  database 4.1 (2022)",
         species: "human",
         state: "healthy adults, tabulated",
+        evidence: Evidence::Cited,
         weakness,
     }
 }
@@ -33,6 +34,7 @@ pub(super) const MUSCLE: TissuePreset = TissuePreset {
                  105924, E = 3 μ",
         species: "rabbit; range: human",
         state: "ex vivo, tension across the fibres, steepest part of the curve; range: in vivo at 50 Hz",
+        evidence: Evidence::Cited,
         weakness: Some(
             "studies disagree even on which direction is stiffer: Wheatley et al., J. Biomech. 49 (2016) 3056",
         ),
@@ -47,6 +49,7 @@ pub(super) const MUSCLE: TissuePreset = TissuePreset {
             source: "Morrow, Haut Donahue, Odegard, Kaufman, J. Mech. Behav. Biomed. Mater. 3 (2010) 124: 447 ± 98 kPa",
             species: "rabbit, extensor digitorum longus",
             state: "ex vivo, tension along the fibres, steepest part of the curve",
+            evidence: Evidence::Cited,
             weakness: Some("the curve is flat before it is steep: a small stretch in the body meets far less"),
         },
     }),
@@ -63,6 +66,7 @@ pub(super) const SKIN: TissuePreset = TissuePreset {
                  volunteers; 40 kPa for the dermis of the forearm, Feng, Li, Ramier, Eltony, Yun, Acta Biomaterialia (2022) 295",
         species: "human",
         state: "in vivo; suction below 40 mbar",
+        evidence: Evidence::Read,
         weakness: None,
     },
     poisson: KEEPS_TRACE,
@@ -76,6 +80,7 @@ pub(super) const SKIN: TissuePreset = TissuePreset {
                      ± 0.88 MPa, 56 samples of the back",
             species: "human",
             state: "ex vivo, fresh or frozen; tension at 0.012 1/s, first part of the curve",
+            evidence: Evidence::Read,
             weakness: Some(
                 "the mean over all directions to Langer's lines, and in tension: suction in vivo meets a twentieth",
             ),
@@ -93,6 +98,7 @@ pub(super) const GALLBLADDER_WALL: TissuePreset = TissuePreset {
         source: "Karimi, Shojaei, Tehrani, J. Med. Eng. Technol. (2017), doi 10.1080/03091902.2017.1366561: 255 ± 25 kPa",
         species: "human",
         state: "ex vivo, cadaver; tension across the long axis",
+        evidence: Evidence::Cited,
         weakness: Some(
             "one study, and the stiff part of its curves: Li et al., J. Mech. Behav. Biomed. Mater. 20 (2013) 363, find walls that \
              are soft at the pressures of the body",
@@ -108,6 +114,7 @@ pub(super) const GALLBLADDER_WALL: TissuePreset = TissuePreset {
             source: "Karimi, Shojaei, Tehrani, J. Med. Eng. Technol. (2017), doi 10.1080/03091902.2017.1366561: 641 ± 28 kPa",
             species: "human",
             state: "ex vivo, cadaver; tension along the long axis",
+            evidence: Evidence::Cited,
             weakness: Some("one study, and the stiff part of its curves"),
         },
     }),
@@ -124,6 +131,7 @@ pub(super) const ARTERY: TissuePreset = TissuePreset {
                  the aorta twice as stiff around as along, when inflated, and 1.4 times when not",
         species: "pig; modulus around the vessel: human",
         state: "ex vivo, purified elastic tissue, inflated",
+        evidence: Evidence::Chosen,
         weakness: Some("a ratio of one tissue times a modulus of another"),
     },
     poisson: Measured {
@@ -146,6 +154,7 @@ pub(super) const ARTERY: TissuePreset = TissuePreset {
                      45 to 49 years, 983 kPa for men of 60 to 64; 3 321 people",
             species: "human",
             state: "in vivo, between diastolic and systolic pressure; ultrasound",
+            evidence: Evidence::Read,
             weakness: Some(
                 "measured about the stretch of the body, here taken from rest: a vessel without pressure is far softer",
             ),

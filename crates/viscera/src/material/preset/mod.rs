@@ -11,6 +11,29 @@ use serde::{Serialize, Serializer};
 
 use super::{Fibre, Lame, LawFamily, LawKind, LawVisitor, MaterialError, Tissue};
 
+/// How a number came here from its source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evidence {
+    /// The number stands in the abstract, a table or the text of the source, and was read there.
+    Read,
+    /// The number is as others cite it: the source itself was not consulted.
+    Cited,
+    /// The number was chosen, for the reason that is given.
+    Chosen,
+}
+
+impl Evidence {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Read => "read in the source",
+            Self::Cited => "as commonly cited; the source itself was not consulted",
+            Self::Chosen => "chosen, for the reason given",
+        }
+    }
+}
+
 /// A number from the literature, in SI.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
@@ -24,6 +47,8 @@ pub struct Measured {
     pub species: &'static str,
     /// In what state it was, and how it was measured.
     pub state: &'static str,
+    /// How the value came here; parts of a range may be worse known, and `source` says which.
+    pub evidence: Evidence,
     /// Why the number is weak, where it is.
     pub weakness: Option<&'static str>,
 }
@@ -154,6 +179,7 @@ const KEEPS_VOLUME: Measured = Measured {
     source: "Fung, Biomechanics: Mechanical Properties of Living Tissues, Springer 1993: soft tissue is mostly water",
     species: "mammals",
     state: "taken, not measured",
+    evidence: Evidence::Chosen,
     weakness: Some("0.49 stands for a volume that is kept, as far as elements bear it that do not lock"),
 };
 

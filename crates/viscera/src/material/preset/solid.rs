@@ -1,13 +1,21 @@
 //! Tissues that are the same in all directions, as far as was measured.
 
-use super::{KEEPS_VOLUME, Measured, TissuePreset};
+use super::{Evidence, KEEPS_VOLUME, Measured, TissuePreset};
 use crate::material::LawKind;
 
 const DENSITIES: &str = "ICRU Report 46 (1992); range: Kaye and Laby, Tables of Physical and Chemical Constants, 2.4.6, and the \
                          IT'IS tissue database 4.1 (2022)";
 
 const fn density(value: f64, range: (f64, f64)) -> Measured {
-    Measured { value, range, source: DENSITIES, species: "human", state: "healthy adults, tabulated", weakness: None }
+    Measured {
+        value,
+        range,
+        source: DENSITIES,
+        species: "human",
+        state: "healthy adults, tabulated",
+        evidence: Evidence::Cited,
+        weakness: None,
+    }
 }
 
 pub(super) const LIVER: TissuePreset = TissuePreset {
@@ -21,6 +29,7 @@ pub(super) const LIVER: TissuePreset = TissuePreset {
                  2.48 kPa, 41 volunteers; E = 3 μ",
         species: "human",
         state: "in vivo, perfused, healthy; magnetic resonance elastography",
+        evidence: Evidence::Read,
         weakness: None,
     },
     poisson: KEEPS_VOLUME,
@@ -39,6 +48,7 @@ pub(super) const KIDNEY: TissuePreset = TissuePreset {
                  9.4 ± 0.8 kPa at 76 Hz, 10 volunteers; E = 3 μ",
         species: "human",
         state: "in vivo, perfused, healthy; magnetic resonance elastography at 45 Hz",
+        evidence: Evidence::Read,
         weakness: Some("twice as stiff at 76 Hz as at 45 Hz: at rest it is softer than either"),
     },
     poisson: KEEPS_VOLUME,
@@ -57,6 +67,7 @@ pub(super) const SPLEEN: TissuePreset = TissuePreset {
                  the right and 4.255 ± 0.625 kPa from the left, from 2.353 to 5.581 kPa, 16 volunteers; E = 3 μ",
         species: "human",
         state: "in vivo, perfused, healthy; magnetic resonance elastography at 60 Hz",
+        evidence: Evidence::Read,
         weakness: Some("the same spleens came out 19 % stiffer when driven from the other side"),
     },
     poisson: KEEPS_VOLUME,
@@ -76,6 +87,7 @@ pub(super) const BRAIN: TissuePreset = TissuePreset {
                  by elastography at 90 Hz, Green, Bilston, Sinkus, NMR Biomed. 21 (2008) 755; E = 3 μ",
         species: "pig; range: human",
         state: "ex vivo; tension, with a law that fits compression too; range: in vivo",
+        evidence: Evidence::Cited,
         weakness: Some(
             "softer in tension than in compression, and relaxes to a fifth within minutes: no law here shows either",
         ),
@@ -96,6 +108,7 @@ pub(super) const FAT: TissuePreset = TissuePreset {
                  range: breast-fat; E = 3 μ",
         species: "human",
         state: "in vivo, buttock, not compressed; magnetic resonance elastography at 50 Hz",
+        evidence: Evidence::Cited,
         weakness: Some("stiffens fast when compressed: the modulus went with the power −1.18 of the stretch"),
     },
     poisson: KEEPS_VOLUME,
@@ -117,6 +130,7 @@ pub(super) const BREAST_FAT: TissuePreset = TissuePreset {
                  1.17 kPa for fat and gland together by suction, Clinical Biomechanics (2022), 7 volunteers; E = 3 μ",
         species: "human",
         state: "in vivo, healthy; magnetic resonance elastography",
+        evidence: Evidence::Read,
         weakness: None,
     },
     poisson: KEEPS_VOLUME,
@@ -134,6 +148,7 @@ pub(super) const BREAST_GLAND: TissuePreset = TissuePreset {
         source: BREAST,
         species: "human",
         state: "in vivo, healthy; magnetic resonance elastography: 2.95 ± 0.43 kPa",
+        evidence: Evidence::Read,
         weakness: None,
     },
     poisson: KEEPS_VOLUME,
@@ -153,6 +168,7 @@ pub(super) const TRUTH_CUBE: TissuePreset = TissuePreset {
         source: KERDOK,
         species: "silicone rubber",
         state: "cured; compression",
+        evidence: Evidence::Read,
         weakness: None,
     },
     poisson: Measured {
@@ -161,6 +177,7 @@ pub(super) const TRUTH_CUBE: TissuePreset = TissuePreset {
         source: KERDOK,
         species: "silicone rubber",
         state: "taken there for the comparison",
+        evidence: Evidence::Read,
         weakness: None,
     },
     density: Measured {
@@ -169,6 +186,7 @@ pub(super) const TRUTH_CUBE: TissuePreset = TissuePreset {
         source: KERDOK,
         species: "silicone rubber",
         state: "taken: the experiment is static, and hardly feels it",
+        evidence: Evidence::Chosen,
         weakness: Some("not stated there"),
     },
     fibre: None,
