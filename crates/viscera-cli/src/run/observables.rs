@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
+use viscera::body::KeptVolumeNow;
 use viscera::math::{Scalar, Vec3};
 use viscera::world::{BodyObservables, InstrumentObservables};
 use viscera_io::write::{Table, WriteError, write_csv};
@@ -17,6 +18,8 @@ const MOST_ROWS: u64 = 20_000;
 #[derive(Debug, Default)]
 pub(super) struct Measured {
     pub(super) bodies: Vec<BodyObservables>,
+    /// The volumes that each body keeps exactly.
+    pub(super) volumes: Vec<Vec<KeptVolumeNow>>,
     pub(super) instruments: Vec<InstrumentObservables>,
 }
 
@@ -73,6 +76,12 @@ fn body_columns(of: &BodyObservables) -> Vec<(&'static str, f64)> {
     ]);
     columns.extend(of.interface_residual.map(|residual| ("interface residual [1]", residual)));
     columns
+}
+
+/// The columns of volumes that are kept exactly: one closed surface after the other.
+fn volume_columns(of: &KeptVolumeNow) -> [(String, f64); 3] {
+    let name = |what: &str| format!("{}: {what}", of.name);
+    [(name("kept volume [m^3]"), of.wanted), (name("volume error [1]"), of.error), (name("pressure [Pa]"), of.pressure)]
 }
 
 /// The columns of an instrument.
@@ -182,9 +191,14 @@ impl Observables {
 
 impl Measured {
     /// The columns of each body, then of each instrument.
-    fn columns(&self) -> Vec<Vec<(&'static str, f64)>> {
-        let instruments = self.instruments.iter().map(instrument_columns);
-        self.bodies.iter().map(body_columns).chain(instruments).collect()
+    fn columns(&self) -> Vec<Vec<(String, f64)>> {
+        let owned = |(name, value): (&str, f64)| (name.to_owned(), value);
+        let of_body = |(body, volumes): (&BodyObservables, &Vec<KeptVolumeNow>)| {
+            body_columns(body).into_iter().map(owned).chain(volumes.iter().flat_map(volume_columns)).collect()
+        };
+        let bodies = self.bodies.iter().zip(&self.volumes).map(of_body);
+        let instruments = self.instruments.iter().map(|of| instrument_columns(of).into_iter().map(owned).collect());
+        bodies.chain(instruments).collect()
     }
 }
 
@@ -192,6 +206,7 @@ fn measure<T: Scalar>(built: &mut BuiltScene<T>) -> Measured {
     let world = &mut built.world;
     Measured {
         bodies: built.bodies.values().map(|&id| world.observe(id)).collect(),
+        volumes: built.bodies.values().map(|&id| world.body(id).kept_volumes().collect()).collect(),
         instruments: built.instruments.values().map(|&id| world.observe_instrument(id)).collect(),
     }
 }

@@ -249,3 +249,26 @@ fn a_step_that_fails_keeps_what_stands_and_says_what_to_change() {
     assert_eq!(column(&desk.read("out/crushed/observables.csv"), "time [s]").last().copied(), Some(time));
     assert!(desk.path("out/crushed/end.png").exists());
 }
+
+/// Each closed surface whose volume is kept exactly has columns of its own: what it keeps, what is left of the error, and the pressure that
+/// it takes.
+#[test]
+fn every_volume_that_is_kept_is_on_record() {
+    let desk = Desk::new();
+    let thorax =
+        r#"body.trunk.exact-volume=[{ name = "abdomen", region = "abdomen" }, { name = "all", region = "all" }]"#;
+    let arguments = ["run", "breathing-trunk", "--time", "0.8 s", "--pictures=0", "--out", "breath", "--set", thorax];
+    desk.viscera(&arguments).ends_with(0);
+    let csv = desk.read("breath/observables.csv");
+    for name in ["abdomen", "all"] {
+        let kept = column(&csv, &format!("trunk: {name}: kept volume [m^3]"));
+        let errors = column(&csv, &format!("trunk: {name}: volume error [1]"));
+        assert!(kept[0] > 1e-3 && kept.iter().all(|volume| *volume == kept[0]), "{name}: {kept:?}");
+        assert!(errors.iter().all(|error| error.abs() < 1e-13), "{name}: {errors:?}");
+        let pressure = column(&csv, &format!("trunk: {name}: pressure [Pa]"));
+        assert!(pressure[0] == 0.0 && pressure.last().is_some_and(|last| last.abs() > 1.0), "{name}: {pressure:?}");
+    }
+    let worst = column(&csv, "trunk: volume error [1]");
+    let [a, b] = ["abdomen", "all"].map(|name| column(&csv, &format!("trunk: {name}: volume error [1]")));
+    assert!(worst.iter().zip(a.iter().zip(&b)).all(|(worst, (a, b))| *worst == a.abs().max(b.abs())));
+}
