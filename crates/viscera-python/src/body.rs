@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
-use viscera::body::{Body, Load, LoosePieces, Muscle};
+use viscera::body::{Actuator, Body, Load, LoosePieces, Muscle};
 use viscera::curve::Curve;
 use viscera::math::Vec3;
 use viscera::mesh::{Region, VolumeMesh};
@@ -13,7 +13,7 @@ use viscera::mesh::{Region, VolumeMesh};
 use crate::arrays::{Numbers, scalars};
 use crate::mesh::PyVolumeMesh;
 use crate::model::{AnyModel, PyModel, choose};
-use crate::region::{PyLoad, PyMuscle, number_curve, region, vector_curve};
+use crate::region::{PyActuator, PyLoad, PyMuscle, number_curve, region, vector_curve};
 
 /// A body to be added to a world: a mesh, its tissue, and what holds and pulls it.
 #[pyclass(frozen, name = "Body", module = "viscera")]
@@ -36,6 +36,7 @@ pub(crate) struct Description {
     pub(crate) exact_volumes: Vec<(String, Region)>,
     pub(crate) rigid: Vec<Region>,
     pub(crate) muscles: Vec<Muscle>,
+    pub(crate) actuators: Vec<Actuator>,
     pub(crate) loads: Vec<Load>,
     pub(crate) loose_pieces: LoosePieces,
 }
@@ -71,6 +72,9 @@ impl Description {
         for muscle in &self.muscles {
             body = body.muscle(muscle.clone());
         }
+        for actuator in &self.actuators {
+            body = body.actuator(actuator.clone());
+        }
         for load in &self.loads {
             body = body.load(load.clone());
         }
@@ -99,13 +103,14 @@ impl PyBody {
     /// `keep_volume`: stiffness of the volume-keeping force on each tetrahedron [Pa, ≥ 0]. `damping`: rate [1/s, ≥ 0].
     /// `stiffness_damping`: α of Rayleigh's damping [s, ≥ 0], implicit steps only. One or a list of: `fix`, regions that stay;
     /// `slide`, (region, normal) that move across the normal only; `prescribe`, (region, displacement) moved as a `Curve` says
-    /// [m]; `prescribe_along`, (region, normal, displacement along it); `load`, loads. With explicit steps also: `keep_volume_exactly`,
+    /// [m]; `prescribe_along`, (region, normal, displacement along it); `load`, loads; `actuator`,
+    /// actuators. With explicit steps also: `keep_volume_exactly`,
     /// (name, region of cells) whose common volume is kept to rounding; `rigid`, regions of nodes that each move as one rigid body;
     /// `muscle`, muscles. `loose_pieces`: "free" or "drop" what a cut separates from everything that holds it.
     #[new]
     #[pyo3(signature = (mesh, density, *, model, name="body", keep_volume=0.0, damping=0.0, stiffness_damping=0.0, fix=None,
         slide=None, prescribe=None, prescribe_along=None, load=None, keep_volume_exactly=None, rigid=None, muscle=None,
-        loose_pieces="free"))]
+        actuator=None, loose_pieces="free"))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         mesh: &PyVolumeMesh,
@@ -123,6 +128,7 @@ impl PyBody {
         keep_volume_exactly: Option<&Bound<'_, PyAny>>,
         rigid: Option<&Bound<'_, PyAny>>,
         muscle: Option<&Bound<'_, PyAny>>,
+        actuator: Option<&Bound<'_, PyAny>>,
         loose_pieces: &str,
     ) -> PyResult<Self> {
         let densities = scalars(&density, "density")?;
@@ -165,6 +171,10 @@ impl PyBody {
             muscles: each(muscle)?
                 .iter()
                 .map(|muscle| Ok(muscle.cast::<PyMuscle>()?.get().0.clone()))
+                .collect::<PyResult<_>>()?,
+            actuators: each(actuator)?
+                .iter()
+                .map(|actuator| Ok(actuator.cast::<PyActuator>()?.get().0.clone()))
                 .collect::<PyResult<_>>()?,
             loads: each(load)?
                 .iter()

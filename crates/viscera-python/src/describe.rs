@@ -9,7 +9,7 @@ use std::path::Path;
 use indexmap::IndexMap;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use viscera::body::{Load, LoosePieces, Muscle, NodeMotion};
+use viscera::body::{Actuator, ActuatorLine, Load, LoosePieces, Muscle, NodeMotion};
 use viscera::curve::Curve;
 use viscera::dynamics::implicit::{Implicit, MatrixForm, Newton, Preconditioning, Scheme};
 use viscera::dynamics::quasi_static::QuasiStatic;
@@ -185,6 +185,8 @@ fn body(body: &Description, file: &str, attached: &[Json]) -> PyResult<Json> {
         }).collect::<Vec<_>>()),
         "rigid": each(&body.rigid),
         "muscle": Json::from(body.muscles.iter().map(muscle).collect::<Vec<_>>()),
+        "actuator": Json::from(body.actuators.iter().filter_map(actuator).collect::<Vec<_>>()),
+        "active-fibre": Json::from(body.actuators.iter().filter_map(active_fibre).collect::<Vec<_>>()),
         "load": Json::from(body.loads.iter().map(load).collect::<Vec<_>>()),
     })
 }
@@ -209,6 +211,28 @@ fn muscle(muscle: &Muscle) -> Json {
     }
 }
 
+fn actuator(actuator: &Actuator) -> Option<Json> {
+    let ActuatorLine::Between { from, to } = &actuator.line else { return None };
+    Some(object! {
+        "from": region(from),
+        "to": region(to),
+        "stiffness": Json::from(actuator.stiffness),
+        "length": curve(&actuator.length, Json::from),
+        "force": curve(&actuator.tension, Json::from),
+    })
+}
+
+fn active_fibre(actuator: &Actuator) -> Option<Json> {
+    let ActuatorLine::Along { region: at, direction } = &actuator.line else { return None };
+    Some(object! {
+        "region": region(at),
+        "direction": Json::from(direction.to_vec()),
+        "young": Json::from(actuator.stiffness),
+        "length": curve(&actuator.length, Json::from),
+        "stress": curve(&actuator.tension, Json::from),
+    })
+}
+
 fn load(load: &Load) -> Json {
     match load {
         Load::Force { region: at, total } => object! { "region": region(at), "force": curve(total, vector) },
@@ -218,6 +242,17 @@ fn load(load: &Load) -> Json {
         Load::Traction { region: at, traction } => {
             object! { "region": region(at), "traction": curve(traction, vector) }
         }
+        Load::BodyForce { region: at, per_volume } => {
+            object! { "region": region(at), "body-force": curve(per_volume, vector) }
+        }
+        Load::Attraction { region: at, centre, radius, per_volume } => object! {
+            "region": region(at),
+            "attraction": object! {
+                "centre": Json::from(centre.to_vec()),
+                "radius": Json::from(*radius),
+                "per-volume": curve(per_volume, Json::from),
+            },
+        },
     }
 }
 

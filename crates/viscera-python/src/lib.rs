@@ -41,6 +41,7 @@ fn _viscera(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<region::PyCurve>()?;
     module.add_class::<region::PyLoad>()?;
     module.add_class::<region::PyMuscle>()?;
+    module.add_class::<region::PyActuator>()?;
     module.add_class::<body::PyBody>()?;
     module.add_class::<integrator::PyExplicit>()?;
     module.add_class::<integrator::PyImplicit>()?;

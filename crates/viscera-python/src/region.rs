@@ -2,7 +2,7 @@
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use viscera::body::{Load, Muscle};
+use viscera::body::{Actuator, ActuatorLine, Load, Muscle};
 use viscera::curve::{Curve, CurveValue};
 use viscera::math::Vec3;
 use viscera::mesh::{Point, Region};
@@ -198,6 +198,79 @@ impl PyLoad {
     #[staticmethod]
     fn traction(region: &Bound<'_, PyAny>, traction: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self(Load::Traction { region: self::region(region)?, traction: vector_curve(traction)? }))
+    }
+
+    /// A field of one direction: force per rest volume of the cells in a region [N/m³].
+    #[staticmethod]
+    fn body_force(region: &Bound<'_, PyAny>, per_volume: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(Load::BodyForce { region: self::region(region)?, per_volume: vector_curve(per_volume)? }))
+    }
+
+    /// A field towards a place [m], that of a ball that attracts: `per_volume` [N/m³] at its `radius` [m], falling by the square of the
+    /// distance outside and in proportion to it inside.
+    #[staticmethod]
+    #[pyo3(signature = (region, *, centre, radius, per_volume))]
+    fn attraction(
+        region: &Bound<'_, PyAny>,
+        centre: [f64; 3],
+        radius: f64,
+        per_volume: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let per_volume = number_curve(per_volume)?;
+        Ok(Self(Load::Attraction { region: self::region(region)?, centre, radius, per_volume }))
+    }
+}
+
+/// A linear actuator: it pulls along a line with stiffness × (length now − `length` × length at rest) + tension. For every integrator.
+#[pyclass(frozen, name = "Actuator", module = "viscera")]
+pub(crate) struct PyActuator(pub(crate) Actuator);
+
+fn curve_or(given: Option<&Bound<'_, PyAny>>, value: f64) -> PyResult<Curve<f64>> {
+    given.map_or(Ok(Curve::constant(value)), number_curve)
+}
+
+#[pymethods]
+impl PyActuator {
+    /// Between the mean places of two regions, which share its pull. `stiffness` [N/m, ≥ 0]; `length`: the length at which it is slack,
+    /// over that at rest; `force`: what it pulls with besides [N]. Both are numbers, `Curve`s or points (time [s], value).
+    #[staticmethod]
+    #[pyo3(signature = (start, end, *, stiffness=0.0, length=None, force=None))]
+    fn between(
+        start: &Bound<'_, PyAny>,
+        end: &Bound<'_, PyAny>,
+        stiffness: f64,
+        length: Option<&Bound<'_, PyAny>>,
+        force: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let line = ActuatorLine::Between { from: region(start)?, to: region(end)? };
+        Ok(Self(Actuator { line, stiffness, length: curve_or(length, 1.0)?, tension: curve_or(force, 0.0)? }))
+    }
+
+    /// In every cell of a region, along a direction at rest that goes with the tissue. `young`: Young's modulus along it [Pa, ≥ 0];
+    /// `length`: the stretch at which it is slack; `stress`: what it pulls with besides [Pa of rest area].
+    #[staticmethod]
+    #[pyo3(signature = (region, direction, *, young=0.0, length=None, stress=None))]
+    fn along(
+        region: &Bound<'_, PyAny>,
+        direction: [f64; 3],
+        young: f64,
+        length: Option<&Bound<'_, PyAny>>,
+        stress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let line = ActuatorLine::Along { region: self::region(region)?, direction };
+        let (length, tension) = (curve_or(length, 1.0)?, curve_or(stress, 0.0)?);
+        Ok(Self(Actuator { line, stiffness: young, length, tension }))
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.0.line {
+            ActuatorLine::Between { from, to } => {
+                format!("<actuator from {} to {}: {:?} N/m>", from.describe(), to.describe(), self.0.stiffness)
+            }
+            ActuatorLine::Along { region, direction } => {
+                format!("<actuators in {} along {direction:?}: {:?} Pa>", region.describe(), self.0.stiffness)
+            }
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-"""Volumes kept exactly, rigid parts and muscles from Python."""
+"""Volumes kept exactly, rigid parts, muscles, actuators and fields from Python."""
 
 import numpy as np
 import pytest
@@ -43,6 +43,34 @@ def test_a_rigid_part_keeps_its_distances_and_the_rest_does_not():
     distances = lambda x: np.linalg.norm(x[:, None] - x[None], axis=2)
     assert np.abs(distances(now[rigid]) - distances(rest[rigid])).max() < 1e-12
     assert np.abs(distances(now) - distances(rest)).max() > 1e-4
+
+
+def test_active_tissue_shortens_to_where_its_stresses_balance():
+    """E = 10 kPa with fibres of 4 kPa that are slack at 0.7 and pull with 1 kPa: a stretch of (10 + 2.8 - 1)/14, whoever steps it."""
+    law = viscera.LinearElastic.from_young_poisson(10e3, 0.0)
+    fibres = viscera.Actuator.along("all", [0, 0, 1], young=4e3, length=[(0.0, 1.0), (1.0, 0.7)], stress=[(0.0, 0.0), (1.0, 1e3)])
+    for integrator in (viscera.Explicit(), viscera.Implicit()):
+        world = viscera.World(gravity=[0, 0, 0], step=0.02, integrator=integrator)
+        model = viscera.Corotational(law)
+        body = world.add(viscera.Body(MESH, 1000.0, model=model, damping=30.0, fix="z-min", actuator=fibres))
+        world.steps(150)
+        assert body.positions[:, 2].max() / 0.3 == pytest.approx(11.8 / 14, abs=1e-4)
+
+
+def test_an_actuator_and_a_field_pull_with_what_they_say():
+    tendon = viscera.Actuator.between("z-min", "z-max", force=2.0)
+    weight = viscera.Load.body_force("all", [0, -9810.0, 0])
+    pull = viscera.Load.attraction("all", centre=[0.05, 0.05, 10.15], radius=1.0, per_volume=100.0)
+    world = viscera.World(gravity=[0, 0, 0], step=0.01)
+    body = world.add(
+        viscera.Body(MESH, 1000.0, model=viscera.MassSpring(LAW), fix="all", actuator=[tendon], load=[weight, pull])
+    )
+    world.step()
+    forces = body.external_forces
+    assert forces[:, 1].sum() == pytest.approx(-9810 * 0.003, rel=1e-9)
+    # A hundredth of 100 N/m³ on 3 litres ten metres off; the tendon adds nothing to the sum.
+    assert forces[:, 2].sum() == pytest.approx(0.003, rel=1e-3)
+    assert forces[MESH.nodes[:, 2] > 0.29, 2].sum() == pytest.approx(-2.0, rel=1e-3)
 
 
 def test_a_muscle_pulls_as_activated():

@@ -5,6 +5,7 @@ raises a subclass of :class:`Error` that says what to change.
 """
 
 from ._viscera import (
+    Actuator,
     Attachment,
     Body,
     BodyObservables,
@@ -84,6 +85,7 @@ from .tissues import TISSUES, Measured, Preset
 
 __all__ = [
     "__version__",
+    "Actuator",
     "Attachment",
     "Body",
     "BodyObservables",
