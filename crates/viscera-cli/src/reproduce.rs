@@ -37,7 +37,7 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<(), Failure> {
     if !arguments.quiet {
         say(&results(&report, &page));
     }
-    judge(&report, &interrupt)
+    judge(&report, interrupt.is_asked())
 }
 
 /// The experiments that are named, each once and in the order of the report; all of them if none is.
@@ -93,7 +93,7 @@ fn results(report: &Report, page: &std::path::Path) -> String {
 }
 
 /// Fails where an experiment failed, or something does not hold that has to.
-fn judge(report: &Report, interrupt: &Interrupt) -> Result<(), Failure> {
+fn judge(report: &Report, interrupted: bool) -> Result<(), Failure> {
     let mut wrong = Vec::new();
     for Chapter { experiment, found, .. } in &report.chapters {
         match found {
@@ -106,7 +106,7 @@ fn judge(report: &Report, interrupt: &Interrupt) -> Result<(), Failure> {
     if !wrong.is_empty() {
         return Err(Failure::Problem(wrong.join("\n")));
     }
-    match interrupt.is_asked() {
+    match interrupted {
         true => Err(Failure::Interrupted("interrupted; the page holds what was run until then".into())),
         false => Ok(()),
     }
@@ -138,5 +138,31 @@ impl Progress {
 
     fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use viscera_reproduce::{Relation, Section};
+
+    use super::*;
+
+    fn found(relations: Vec<Relation>) -> Report {
+        let section = Section { relations, ..Section::default() };
+        let chapter = Chapter { experiment: EXPERIMENTS[0], seconds: 0.0, found: Ok(section) };
+        Report { chapters: vec![chapter], ..Report::default() }
+    }
+
+    /// A relation that does not hold is a problem, named with what was measured, and the program ends with 1.
+    #[test]
+    fn a_relation_that_does_not_hold_is_a_problem() {
+        let holds = || Relation::at_most("volume falls", 0.5, 1.0);
+        assert!(judge(&found(vec![holds()]), false).is_ok());
+        let failure = judge(&found(vec![holds(), Relation::at_most("volume stays", 2.0, 1.0)]), false).unwrap_err();
+        assert!(matches!(failure, Failure::Problem(_)), "{failure}");
+        let said = failure.to_string();
+        assert!(said.contains("rotation: does not hold: volume stays (2.00 ≤ 1.00)"), "{said}");
+        assert!(!said.contains("volume falls"), "{said}");
+        assert!(matches!(judge(&found(vec![holds()]), true), Err(Failure::Interrupted(_))));
     }
 }

@@ -53,7 +53,10 @@ holds! {
     assembling_is_timed: "assembly",
     rotations_bring_inverted_tissue_back: "inversion",
     steps_are_timed: "speed",
+    with_multigrid_iterations_do_not_grow_with_the_mesh: "multigrid",
     a_beam_sinks_as_theory_says: "beam",
+    cantilevers_bend_as_in_other_programs: "cantilevers",
+    tissue_that_keeps_its_volume_locks_plain_elements: "nearly-incompressible",
     without_its_beads_the_truth_cube_is_not_run: "truth-cube",
     extrapolated_forces_are_off_by_their_order: "extrapolation",
 }

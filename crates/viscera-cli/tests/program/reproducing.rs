@@ -1,5 +1,10 @@
 //! `viscera reproduce`: names, data, the page and its files.
 
+use std::fs;
+use std::path::Path;
+
+use viscera_reproduce::EXPERIMENTS;
+
 use super::Desk;
 
 #[test]
@@ -36,4 +41,47 @@ fn a_folder_that_cannot_be_written_to_is_told_at_once() {
     let desk = Desk::new();
     desk.write("file", "");
     desk.viscera(&["reproduce", "--out", "file/papers"]).ends_with(2).complains("choose another folder");
+}
+
+/// The whole command, quick: it ends well, which it does only if every relation holds; every experiment has its section on a page that
+/// needs no other file, and whatever the page shows lies beside it as a file.
+#[test]
+fn every_experiment_has_its_section_and_its_files() {
+    let desk = Desk::new();
+    let outcome = desk.viscera(&["reproduce", "--quick", "--quiet", "--out", "papers"]).ends_with(0);
+    assert_eq!(outcome.err, "");
+    let page = desk.read("papers/index.html");
+    let kinds = |folder: &Path| {
+        let mut kinds: Vec<_> = fs::read_dir(folder)
+            .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+            .map(|entry| entry.unwrap().path().extension().unwrap().to_string_lossy().into_owned())
+            .collect();
+        kinds.sort();
+        kinds.dedup();
+        kinds
+    };
+    let (mut pictures, mut plots) = (0, 0);
+    for experiment in EXPERIMENTS {
+        let name = experiment.name;
+        assert!(page.contains(&format!("id=\"{name}\"")), "{name} has no section");
+        let kinds = kinds(&desk.path("papers").join(name));
+        let has = |kind: &str| kinds.iter().any(|found| found == kind);
+        assert!(has("md"), "{name}: {kinds:?}");
+        // Without the beads that were measured nothing can be compared with them.
+        assert!(name == "truth-cube" || has("csv"), "{name}: {kinds:?}");
+        pictures += usize::from(has("png"));
+        plots += usize::from(has("svg"));
+    }
+    assert!(pictures >= 6 && plots >= 6, "{pictures} sections with pictures, {plots} with plots");
+    assert!(!page.contains('✗'), "a relation is marked as one that does not hold");
+    // A drawing names its format by an address, and nothing is fetched from there.
+    for (place, _) in page.match_indices("http") {
+        assert!(page[place..].starts_with("http://www.w3.org/"), "{}", &page[place..place + 60]);
+    }
+    for link in ["src=\"", "href=\""] {
+        for (place, _) in page.match_indices(link) {
+            let target = &page[place + link.len()..];
+            assert!(target.starts_with('#') || target.starts_with("data:"), "the page needs {}", &target[..40]);
+        }
+    }
 }

@@ -3,11 +3,14 @@
 mod adaptive;
 mod assembly;
 mod beam;
+mod cantilevers;
 mod cost;
 mod cylinder;
 mod extrapolation;
 mod inversion;
 mod liver;
+mod multigrid;
+mod nearly_incompressible;
 mod resection;
 mod rotation;
 mod speed;
@@ -38,7 +41,7 @@ pub struct Experiment {
 }
 
 /// All of them, in the order of the report.
-pub const EXPERIMENTS: [Experiment; 14] = [
+pub const EXPERIMENTS: [Experiment; 17] = [
     rotation::EXPERIMENT,
     cylinder::EXPERIMENT,
     tubes::EXPERIMENT,
@@ -50,7 +53,10 @@ pub const EXPERIMENTS: [Experiment; 14] = [
     assembly::EXPERIMENT,
     inversion::EXPERIMENT,
     speed::EXPERIMENT,
+    multigrid::EXPERIMENT,
     beam::EXPERIMENT,
+    cantilevers::EXPERIMENT,
+    nearly_incompressible::EXPERIMENT,
     truth_cube::EXPERIMENT,
     extrapolation::EXPERIMENT,
 ];
