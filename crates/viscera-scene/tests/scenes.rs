@@ -255,14 +255,14 @@ fn an_arm_bends_by_fibres_and_by_a_tendon_and_its_foot_holds_nothing() {
         if step == 200 || step == built.steps() {
             let observed = built.world.observe(arm);
             let forces = built.world.external_forces(arm).iter().map(|force| force.norm()).sum::<f64>();
-            assert!(observed.reaction.norm() < 3e-3 * forces, "{} N of {forces} N", observed.reaction.norm());
+            assert!(observed.reaction.norm() < 1e-4 * forces, "{} N of {forces} N", observed.reaction.norm());
             ways.push(built.world.body(arm).positions()[tip].x - 0.015);
         }
     }
     let curvature = 3.0 * 1e3 / (2.0 * 20e3 * 0.03);
     let expected = (1.0 - (curvature * 0.2f64).cos()) / curvature;
     let share = -ways[0] / expected;
-    assert!((0.7..1.1).contains(&share), "the tip goes {} m, beam theory has {expected} m", -ways[0]);
+    assert!((0.65..1.1).contains(&share), "the tip goes {} m, beam theory has {expected} m", -ways[0]);
     assert!(ways[1] > 0.02, "the tendon draws the tip to {} m", ways[1]);
 }
 
