@@ -83,7 +83,7 @@ impl<T: Scalar> Group<'_, T> {
     }
 
     /// The tied bodies, with all bodies of the world and their memories; none for one alone.
-    pub(super) fn tied(&mut self) -> Option<(&mut TiedBodies<T>, &mut [SimulatedBody<T>], &mut [ImplicitMemory<T>])> {
+    pub(super) fn tied(&mut self) -> Option<Tied<'_, T>> {
         match &mut self.together {
             Together::Alone(_) => None,
             Together::Tied(tied) => Some((&mut **tied, &mut *self.bodies, &mut *self.memories)),
@@ -179,3 +179,6 @@ impl<T: Scalar> Group<'_, T> {
         self.each(|step| step.move_by(length));
     }
 }
+
+/// Tied bodies, all bodies of the world, and the memories of these.
+type Tied<'a, T> = (&'a mut TiedBodies<T>, &'a mut [SimulatedBody<T>], &'a mut [ImplicitMemory<T>]);
