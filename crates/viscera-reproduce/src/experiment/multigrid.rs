@@ -15,7 +15,7 @@ pub(super) const EXPERIMENT: Experiment = Experiment {
 
 /// By how much iterations at rest grow from one mesh of a body to its finest.
 fn growth(study: &MultigridStudy, body: &str, from: usize, iterations: impl Fn(&Row) -> u32) -> f64 {
-    let counts: Vec<f64> = study.of(body, 1.0, false).map(|row| f64::from(iterations(row))).collect();
+    let counts: Vec<f64> = study.of(body, false, 1.0).map(|row| f64::from(iterations(row))).collect();
     match (counts.get(from), counts.last()) {
         (Some(first), Some(last)) => last / first,
         _ => f64::NAN,
@@ -31,7 +31,7 @@ fn run(settings: &Settings) -> Result<Section, ReproduceError> {
     .setting("tissue", "E = 10 kPa, ν = 0.45, 1000 kg/m³; corotational tetrahedra, double precision, one core")
     .setting("step", "linearised backward Euler from rest, 10 ms and 1 s, to a residual of 1e-6");
     for body in ["cantilever", "liver"] {
-        if let Some(row) = study.of(body, 0.01, false).last() {
+        if let Some(row) = study.of(body, false, 0.01).last() {
             let (plain, multigrid) = (row.block_jacobi.iterations, row.multigrid.iterations);
             let ours = format!("{multigrid} with multigrid, {plain} without, {} tetrahedra", brief(row.cells as f64));
             let why = "Five leave a residual; here they go on until it has fallen to 1e-6.";
