@@ -1,18 +1,24 @@
-//! Who computes: one thread, or a team of them.
+//! Who computes: one thread, or a pool of them.
 //!
 //! Work is divided into parts whose number and bounds follow from the data alone, and results are joined in the order of the
 //! parts: the bits of a result do not depend on how many threads there are.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use viscera_team::Team;
+use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
+
+/// How often a thread looks for work before it lets others have its core.
+const PATIENCE: u32 = 1000;
 
 /// Threads that a step may use; by default just the one that calls.
 ///
-/// Cloning is cheap, and clones share their threads. While one of them is at work for a caller, another caller works alone.
+/// Cloning is cheap, and clones share their threads.
 #[derive(Clone, Debug, Default)]
 pub struct Executor {
-    team: Option<Arc<Team>>,
+    pool: Option<Arc<ThreadPool>>,
+    /// Whether each thread has a core of its own, as far as the machine goes.
+    has_cores: bool,
 }
 
 /// Why there are no threads to compute with.
@@ -24,7 +30,7 @@ pub enum ExecutorError {
         /// How many were asked for.
         threads: usize,
         /// What the operating system said.
-        source: std::io::Error,
+        source: rayon::ThreadPoolBuildError,
     },
 }
 
@@ -34,7 +40,7 @@ impl Executor {
         Self::default()
     }
 
-    /// The calling thread and as many others as make `threads` [≥ 1].
+    /// A pool of `threads` threads [≥ 1]; one thread needs no pool.
     ///
     /// # Errors
     /// [`ExecutorError::NoThreads`] where the system refuses to start them.
@@ -42,20 +48,23 @@ impl Executor {
         if threads <= 1 {
             return Ok(Self::serial());
         }
-        let team = Team::new(threads).map_err(|source| ExecutorError::NoThreads { threads, source })?;
-        Ok(Self { team: Some(Arc::new(team)) })
+        let has_cores = std::thread::available_parallelism().is_ok_and(|cores| threads <= cores.get());
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.map(|pool| Self { pool: Some(Arc::new(pool)), has_cores })
+            .map_err(|source| ExecutorError::NoThreads { threads, source })
     }
 
     /// How many threads there are.
     pub fn thread_count(&self) -> usize {
-        self.team.as_ref().map_or(1, |team| team.thread_count())
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
-    /// Does `work` while the threads stand ready for its loops. A step has hundreds of a few microseconds, and to wake a thread for each
-    /// takes longer.
-    pub(crate) fn enter<R>(&self, work: impl FnOnce() -> R) -> R {
-        match &self.team {
-            Some(team) => team.stand_ready(work),
+    /// Does `work` among the threads: what it divides then finds them awake. A step has hundreds of loops of a few microseconds,
+    /// and to wake a thread for each takes longer. Threads without a core of their own would only be in each other's way.
+    pub(crate) fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) if self.has_cores => pool.install(|| among_wakeful_threads(work)),
+            Some(pool) => pool.install(work),
             None => work(),
         }
     }
@@ -73,100 +82,58 @@ impl Executor {
         work: &(impl Fn(usize, D) -> R + Sync),
         merge: &(impl Fn(R, R) -> R + Sync),
     ) -> Option<R> {
-        (parts > 0).then(|| match &self.team {
-            Some(team) if parts > 1 => fold_together(team, parts, data, work, merge),
-            _ => fold(0, parts, data, work, merge),
+        (parts > 0).then(|| match &self.pool {
+            Some(pool) if parts > 1 => pool.install(|| fold::<D, R, true>(0, parts, data, work, merge)),
+            _ => fold::<D, R, false>(0, parts, data, work, merge),
         })
     }
 }
 
-fn fold<D: Divide, R>(
+/// Does `work` while the other threads of the pool look for parts of it without sleeping in between.
+fn among_wakeful_threads<R>(work: impl FnOnce() -> R) -> R {
+    let (own, finished) = (rayon::current_thread_index(), AtomicBool::new(false));
+    rayon::in_place_scope(|scope| {
+        scope.spawn_broadcast(|_, thread| {
+            let mut idle = 0;
+            while Some(thread.index()) != own && !finished.load(Ordering::Acquire) {
+                idle = if rayon::yield_now() == Some(Yield::Executed) { 0 } else { idle + 1 };
+                if idle < PATIENCE {
+                    std::hint::spin_loop();
+                } else {
+                    std::thread::yield_now();
+                }
+            }
+        });
+        let _finish = Finish(&finished);
+        work()
+    })
+}
+
+/// Says that the work is finished, also where it panics.
+struct Finish<'a>(&'a AtomicBool);
+
+impl Drop for Finish<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
+    }
+}
+
+fn fold<D: Divide, R: Send, const POOL: bool>(
     first: usize,
     parts: usize,
     data: D,
-    work: &impl Fn(usize, D) -> R,
-    merge: &impl Fn(R, R) -> R,
+    work: &(impl Fn(usize, D) -> R + Sync),
+    merge: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
     if parts == 1 {
         return work(first, data);
     }
     let half = parts / 2;
     let (left, right) = data.divide(half);
-    let left = fold(first, half, left, work, merge);
-    merge(left, fold(first + half, parts - half, right, work, merge))
-}
-
-/// Branches of a fold for each thread, so that one that is late leaves some to the others, and the most of them at all: each has to
-/// come from one core's cache into another's.
-const BRANCHES: usize = 2;
-const MOST_BRANCHES: usize = 16;
-
-/// A branch of a fold: not begun yet, or folded.
-enum Branch<D, R> {
-    Waiting { first: usize, parts: usize, data: D },
-    Folded(R),
-}
-
-/// The same as [`fold`], to the bit: the threads take whole branches of the same tree, each beginning with those that were its own in the loop
-/// before.
-fn fold_together<D: Divide, R: Send>(
-    team: &Team,
-    parts: usize,
-    data: D,
-    work: &(impl Fn(usize, D) -> R + Sync),
-    merge: &(impl Fn(R, R) -> R + Sync),
-) -> R {
-    let threads = team.thread_count();
-    let depth = (BRANCHES * threads).min(MOST_BRANCHES).next_power_of_two().ilog2();
-    let mut branches: [Mutex<Option<Branch<D, R>>>; MOST_BRANCHES] = [const { Mutex::new(None) }; MOST_BRANCHES];
-    let mut count = 0;
-    branch_out(0, parts, data, depth, &mut |branch| {
-        *branches[count].get_mut().unwrap_or_else(PoisonError::into_inner) = Some(branch);
-        count += 1;
-    });
-    team.together(&|thread| {
-        for turn in 0..count {
-            let branch = &branches[(thread * count / threads + turn) % count];
-            let lock = || branch.lock().unwrap_or_else(PoisonError::into_inner);
-            let waiting = lock().take_if(|branch| matches!(branch, Branch::Waiting { .. }));
-            if let Some(Branch::Waiting { first, parts, data }) = waiting {
-                let folded = fold(first, parts, data, work, merge);
-                *lock() = Some(Branch::Folded(folded));
-            }
-        }
-    });
-    let mut results =
-        branches.into_iter().map_while(|branch| match branch.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            Some(Branch::Folded(result)) => Some(result),
-            _ => None,
-        });
-    join_branches(parts, depth, &mut results, merge).expect("a round of the team does every branch, or panics")
-}
-
-/// Divides a fold into branches, `depth` times at most, from left to right.
-fn branch_out<D: Divide, R>(first: usize, parts: usize, data: D, depth: u32, hand_out: &mut impl FnMut(Branch<D, R>)) {
-    if parts == 1 || depth == 0 {
-        return hand_out(Branch::Waiting { first, parts, data });
-    }
-    let half = parts / 2;
-    let (left, right) = data.divide(half);
-    branch_out(first, half, left, depth - 1, hand_out);
-    branch_out(first + half, parts - half, right, depth - 1, hand_out);
-}
-
-/// Merges the results of the branches as [`fold`] would have.
-fn join_branches<R>(
-    parts: usize,
-    depth: u32,
-    results: &mut impl Iterator<Item = R>,
-    merge: &impl Fn(R, R) -> R,
-) -> Option<R> {
-    if parts == 1 || depth == 0 {
-        return results.next();
-    }
-    let half = parts / 2;
-    let left = join_branches(half, depth - 1, results, merge)?;
-    Some(merge(left, join_branches(parts - half, depth - 1, results, merge)?))
+    let left = || fold::<D, R, POOL>(first, half, left, work, merge);
+    let right = || fold::<D, R, POOL>(first + half, parts - half, right, work, merge);
+    let (left, right) = if POOL { rayon::join(left, right) } else { (left(), right()) };
+    merge(left, right)
 }
 
 /// Arrays that can be divided between threads.
@@ -176,7 +143,7 @@ pub(crate) trait Divide: Send + Sized {
 }
 
 /// Nodes in a part of a nodal array: enough work to be worth handing over, and few enough to divide a small body evenly.
-pub(crate) const NODE_BLOCK: usize = 256;
+pub(crate) const NODE_BLOCK: usize = 512;
 
 /// How many parts a nodal array has.
 pub(crate) fn node_blocks(nodes: usize) -> usize {
