@@ -95,12 +95,12 @@ mod tests {
             direction: [0.6, -0.8, 0.0],
             roll: 0.5,
             trigger: 0.0,
-            opening: 0.0,
             active: false,
             holds: false,
             force: [0.0; 3],
             torque: [0.0; 3],
             parts: F32s(Vec::new()),
+            trocar: None,
             stamp: None,
         }
     }

@@ -107,7 +107,7 @@ impl<T: Scalar> TiedBodies<T> {
     /// The ties in a nodal vector of all these bodies, where the nodes of each begin at `starts`.
     pub(super) fn placed(&self, starts: &[usize]) -> PlacedTies {
         let places = self.nodes.iter().map(|node| starts[node.member] + node.node).collect();
-        PlacedTies::new(self.by_mass.clone(), places)
+        PlacedTies::new(TieEquations::new(self.ties.clone(), self.nodes.len()), places)
     }
 
     /// Hears of the force on the node of each tie in the equilibrium that was found last [N], with the number of its attachment.

@@ -7,7 +7,7 @@ use crate::mesh::Point;
 /// Jaws that take what is between them when they close and carry it along until they open.
 ///
 /// That is what the two rods of the jaws sweep over from as far as they open until they are closed: the nodes in there, and the corners of
-/// the cells that reach in between the axes of the jaws, so that jaws finer than the cells hold the tissue that they close on. Without jaws it is
+/// the cells that reach in between the jaws or that they touch, so that jaws finer than the cells hold the tissue that they close on. Without jaws it is
 /// the nodes near the tip.
 ///
 /// A node that needs more than its share of the grip to be carried slips through the jaws, and is dragged with that share.

@@ -94,9 +94,12 @@ impl Jaws {
         squared + beside <= self.radius * self.radius
     }
 
-    /// Places between the axes of the jaws as far as they open, a jaw's radius apart.
+    /// Places between the axes of the jaws as far as they open and a jaw's thickness beyond, a jaw's radius apart: tissue that a jaw touches lies a
+    /// radius off its axis, and where its surface is askew on the outer side.
     pub(super) fn each_place_between(&self, pose: &ToolPose, visit: &mut dyn FnMut(Point)) {
         let (half, length) = self.sector();
+        let thickness = 2.0 * self.radius;
+        let (half, length) = (half + thickness.atan2(length), length + thickness);
         let [across, ..] = pose.turn().columns;
         let hinge = pose.tip - pose.direction * self.length;
         let parts = |way: f64| (way / self.radius).ceil().clamp(1.0, MOST_PLACES) as u32;

@@ -103,11 +103,11 @@ fn jaws_that_close_on_tissue_lift_it() {
 /// Jaws finer than the cells hold the cells that they close on; what lies beside them, as near to the tip, they leave.
 #[test]
 fn jaws_hold_what_is_between_them() {
-    let held = |opening: f64, roll: f64, tip: Vector| {
+    let held = |radius: f64, opening: f64, roll: f64, tip: Vector| {
         let mut world = world::<f64>([0.0; 3], 8e-3, EXPLICIT);
-        // A sheet of 4 mm, its cells 10 mm wide, with jaws of 3 mm from above.
+        // A sheet of 4 mm, its cells 10 mm wide, with thin jaws from above.
         let id = world.add(block([12, 1, 12], [0.12, 0.004, 0.12], Vector::new(-0.06, 0.0, -0.06), 30e3)).unwrap();
-        let jaws = Some(Jaws { length: 0.02, radius: 1.5e-3, opening });
+        let jaws = Some(Jaws { length: 0.02, radius, opening });
         let mount = Mount { roll, ..Mount::along(Vector::new(0.0, -1.0, 0.0)) };
         let tool =
             world.add_instrument(Grasper { path: still(tip), mount, jaws, close: 0.0, ..Grasper::default() }).unwrap();
@@ -122,13 +122,13 @@ fn jaws_hold_what_is_between_them() {
         |nodes: &[Vector], of: fn(&Vector) -> f64| nodes.iter().map(of).fold(0.0, |most: f64, x| most.max(x.abs()));
     // The middle of a cell, which has no node in reach of the jaws.
     let tip = Vector::new(0.005, 0.002, 0.005);
-    let narrow = held(0.05, 0.0, tip);
+    let narrow = held(0.5e-3, 0.05, 0.0, tip);
     assert!((4..=8).contains(&narrow.len()), "the corners of one square: {narrow:?}");
-    let (along_x, along_z) = (held(1.6, 0.0, tip), held(1.6, 0.5 * std::f64::consts::PI, tip));
+    let (along_x, along_z) = (held(1.5e-3, 1.6, 0.0, tip), held(1.5e-3, 1.6, 0.5 * std::f64::consts::PI, tip));
     let wide = [&along_x, &along_z].map(|nodes| [extent(nodes, |x| x.x - 0.005), extent(nodes, |x| x.z - 0.005)]);
-    // Jaws of 20 mm that open by 92 degrees sweep over 10 mm of the sheet to either side, and across they reach no farther than a cell.
+    // Jaws of 20 mm that open by 92 degrees reach over 16 mm of the sheet to either side, and across no farther than a cell.
     for [x, z] in wide {
         assert!(x.max(z) > 0.012 && x.max(z) < 0.026 && x.min(z) < 0.011, "{wide:?}");
     }
-    assert!(held(1.6, 0.0, tip + Vector::new(0.0, 0.03, 0.0)).is_empty(), "too high above the sheet");
+    assert!(held(1.5e-3, 1.6, 0.0, tip + Vector::new(0.0, 0.03, 0.0)).is_empty(), "too high above the sheet");
 }

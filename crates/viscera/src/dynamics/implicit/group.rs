@@ -62,6 +62,9 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) stages: Stages<'a>,
 }
 
+/// Tied bodies, all bodies of their world, and the memory of each.
+type AllTied<'a, T> = (&'a mut TiedBodies<T>, &'a mut [SimulatedBody<T>], &'a mut [ImplicitMemory<T>]);
+
 impl<T: Scalar> Group<'_, T> {
     /// How many bodies there are.
     pub(super) fn count(&self) -> usize {
@@ -83,7 +86,7 @@ impl<T: Scalar> Group<'_, T> {
     }
 
     /// The tied bodies, with all bodies of the world and their memories; none for one alone.
-    pub(super) fn tied(&mut self) -> Option<Tied<'_, T>> {
+    pub(super) fn tied(&mut self) -> Option<AllTied<'_, T>> {
         match &mut self.together {
             Together::Alone(_) => None,
             Together::Tied(tied) => Some((&mut **tied, &mut *self.bodies, &mut *self.memories)),
@@ -179,6 +182,3 @@ impl<T: Scalar> Group<'_, T> {
         self.each(|step| step.move_by(length));
     }
 }
-
-/// Tied bodies, all bodies of the world, and the memories of these.
-type Tied<'a, T> = (&'a mut TiedBodies<T>, &'a mut [SimulatedBody<T>], &'a mut [ImplicitMemory<T>]);
