@@ -171,7 +171,8 @@ fn what_a_recording_promises_is_counted_before_it_is_kept() {
 
 #[test]
 fn a_recording_that_no_program_makes_is_refused_by_what_is_wrong_with_it() {
-    let changed = |change: &dyn Fn(&mut Vec<(rmpv::Value, rmpv::Value)>)| {
+    type Entries = Vec<(rmpv::Value, rmpv::Value)>;
+    let changed = |change: &dyn Fn(&mut Entries)| {
         let mut whole = rmpv::decode::read_value(&mut kept("edge-cut")).unwrap();
         let rmpv::Value::Map(entries) = &mut whole else { panic!("it is a map") };
         change(entries);
