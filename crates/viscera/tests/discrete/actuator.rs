@@ -209,7 +209,8 @@ fn the_tangent_is_the_derivative_of_the_forces() {
         let wanted: Vec<_> = (0..world.body(id).positions().len())
             .map(|node| Vector::new((node as f64).sin(), (2.3 * node as f64).cos(), (0.7 * node as f64).sin()))
             .collect();
-        let answer = world.respond(id, &[wanted.clone()], INERTIA, &mut Iterative::new(1e-13)).unwrap().remove(0);
+        let answer =
+            world.respond(id, std::slice::from_ref(&wanted), INERTIA, &mut Iterative::new(1e-13)).unwrap().remove(0);
         let held = region("z-min").nodes(world.body(id).mesh()).unwrap();
         let rest = world.body(id).mesh().nodes().to_vec();
         let masses = world.body(id).state().masses.clone();
