@@ -105,7 +105,7 @@ fn a_quasi_static_run_leaves_the_residuals_of_every_load_step() {
         let set = format!("integrator={{ kind = \"quasi-static\", solver = \"{solver}\", newton = \"{newton}\" }}");
         let folder = format!("{solver}-{newton}");
         let outcome = desk.viscera(&["run", "cube.toml", "--pictures=0", "--set", &set, "--out", &folder]).ends_with(0);
-        outcome.says("equilibria, 10 ms apart").says("equilibria.csv");
+        outcome.says("equilibria, 10.0 ms apart").says("equilibria.csv");
 
         let csv = desk.read(&format!("{folder}/equilibria.csv"));
         assert!(csv.starts_with("time [s],body [0 cube],share of the load [1],iteration [1],residual [1]\n"), "{csv}");

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use viscera_io::write::write_atomically;
-use viscera_validation::Settings;
+use viscera_validation::{Settings, Table};
 
-use crate::{Experiment, Part, ReproduceError, Section};
+use crate::{Comparison, Experiment, Part, ReproduceError, Section};
 
 /// The page, in the folder of the report.
 const PAGE: &str = "index.html";
@@ -100,6 +100,10 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), ReproduceError> {
 /// Writes tables, plots and pictures, each as a file.
 fn write_files(section: &Section, folder: &Path) -> Result<(), ReproduceError> {
     make(folder)?;
+    if !section.comparisons.is_empty() {
+        let table = published(&section.comparisons);
+        write(&folder.join(format!("{}.csv", table.name())), table.csv().as_bytes())?;
+    }
     for part in &section.parts {
         match part {
             Part::Text(_) => {}
@@ -115,4 +119,14 @@ fn write_files(section: &Section, folder: &Path) -> Result<(), ReproduceError> {
         }
     }
     Ok(())
+}
+
+/// Published values and ours, for other programs to read.
+fn published(comparisons: &[Comparison]) -> Table {
+    let mut table = Table::new("published", &["quantity", "published", "here", "difference", "reason"]);
+    for Comparison { quantity, published, ours, why } in comparisons {
+        let difference = ours.difference_from(published);
+        table.push(vec![quantity.clone(), published.text(), ours.text(), difference, why.clone()]);
+    }
+    table
 }

@@ -19,6 +19,7 @@ mod simulated;
 mod skin;
 mod state;
 mod static_answer;
+mod static_report;
 mod stress;
 mod supports;
 
@@ -42,6 +43,7 @@ pub(crate) use simulated::free_directions;
 pub use state::{BodyState, NodeMotion, PastState};
 pub(crate) use state::{Driven, MotionBackup};
 pub(crate) use static_answer::StaticAnswer;
+pub use static_report::{LoadStep, StaticReport};
 
 use crate::curve::Curve;
 use crate::math::Vec3;

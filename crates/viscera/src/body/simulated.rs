@@ -3,12 +3,11 @@ use super::skin::Skin;
 use super::supports::{filters, motions};
 use super::{
     Actuators, Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoadError, LoosePieces, ModelPlan,
-    Models, MotionBackup, Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer,
+    Models, MotionBackup, Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer, StaticReport,
 };
 use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
 use crate::curve::Curve;
-use crate::dynamics::quasi_static::StaticReport;
 use crate::material::LawKind;
 use crate::math::{Scalar, Vec3};
 use crate::mesh::{VolumeMesh, cells_of_nodes};
