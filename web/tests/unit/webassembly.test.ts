@@ -1,7 +1,7 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { decodeMessage, encodeCommand } from '../../src/engine/encoding';
-import type { Catalogue, Command, Frame, Message } from '../../src/engine/messages';
+import { PROTOCOL_VERSION, type Catalogue, type Command, type Frame, type Message } from '../../src/engine/messages';
 
 /** The engine as WebAssembly without a browser; `build-engine.sh` makes it. */
 const GENERATED = new URL('../../src/engine/generated/', import.meta.url);
@@ -35,7 +35,7 @@ async function begin(): Promise<(command?: Command, elapsed?: number) => Message
 describe.skipIf(!existsSync(BINARY))('the engine as WebAssembly', () => {
   test('recordings of the program come to the same numbers', { timeout: 600_000 }, async () => {
     const say = await begin();
-    const catalogue = say({ type: 'hello', version: 1 }).find(
+    const catalogue = say({ type: 'hello', version: PROTOCOL_VERSION }).find(
       (message): message is Catalogue => message.type === 'catalogue',
     )!;
     expect(catalogue.recordings.length).toBeGreaterThanOrEqual(2);
