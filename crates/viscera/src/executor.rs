@@ -3,6 +3,7 @@
 //! Work is divided into parts whose number and bounds follow from the data alone, and results are joined in the order of the
 //! parts: the bits of a result do not depend on how many threads there are.
 
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -89,15 +90,23 @@ impl Executor {
     }
 }
 
+thread_local! {
+    /// How much work, and how many parts that may have come from another thread, this thread is in the middle of.
+    static AT_WORK: Cell<u32> = const { Cell::new(0) };
+}
+
 /// Does `work` while the other threads of the pool look for parts of it without sleeping in between.
+///
+/// A thread may hear that it is to stay awake while it waits in the middle of a part, or of other work. There it must not stay: who
+/// waits for it would wait until this work is finished, which may wait for them.
 fn among_wakeful_threads<R>(work: impl FnOnce() -> R) -> R {
-    let (own, finished) = (rayon::current_thread_index(), AtomicBool::new(false));
+    let finished = AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
-        scope.spawn_broadcast(|_, thread| {
-            let mut idle = 0;
-            while Some(thread.index()) != own && !finished.load(Ordering::Acquire) {
-                idle = if rayon::yield_now() == Some(Yield::Executed) { 0 } else { idle + 1 };
-                if idle < PATIENCE {
+        scope.spawn_broadcast(|_, _| {
+            let (is_idle, mut vain) = (AT_WORK.get() == 0, 0);
+            while is_idle && !finished.load(Ordering::Acquire) {
+                vain = if rayon::yield_now() == Some(Yield::Executed) { 0 } else { vain + 1 };
+                if vain < PATIENCE {
                     std::hint::spin_loop();
                 } else {
                     std::thread::yield_now();
@@ -105,8 +114,25 @@ fn among_wakeful_threads<R>(work: impl FnOnce() -> R) -> R {
             }
         });
         let _finish = Finish(&finished);
+        let _at_work = AtWork::begin();
         work()
     })
+}
+
+/// While it lives, its thread is at work.
+struct AtWork;
+
+impl AtWork {
+    fn begin() -> Self {
+        AT_WORK.set(AT_WORK.get() + 1);
+        Self
+    }
+}
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        AT_WORK.set(AT_WORK.get() - 1);
+    }
 }
 
 /// Says that the work is finished, also where it panics.
@@ -131,7 +157,10 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     let half = parts / 2;
     let (left, right) = data.divide(half);
     let left = || fold::<D, R, POOL>(first, half, left, work, merge);
-    let right = || fold::<D, R, POOL>(first + half, parts - half, right, work, merge);
+    let right = || {
+        let _at_work = POOL.then(AtWork::begin);
+        fold::<D, R, POOL>(first + half, parts - half, right, work, merge)
+    };
     let (left, right) = if POOL { rayon::join(left, right) } else { (left(), right()) };
     merge(left, right)
 }
@@ -180,5 +209,37 @@ impl<A: Divide, B: Divide> Divide for (A, B) {
     fn divide(self, parts: usize) -> (Self, Self) {
         let ((a, c), (b, d)) = (self.0.divide(parts), self.1.divide(parts));
         ((a, b), (c, d))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Threads that stayed awake in the middle of a part kept others waiting, who kept them waiting: once in some thousand steps of one
+    /// world, and at once where two worlds share their threads.
+    #[test]
+    fn steps_of_worlds_that_share_their_threads_end() {
+        let executor = Executor { has_cores: true, ..Executor::threads(2).unwrap() };
+        let (say, hear) = channel();
+        for _ in 0..2 {
+            let (executor, say) = (executor.clone(), say.clone());
+            std::thread::spawn(move || {
+                for _ in 0..2000 {
+                    executor.enter(|| {
+                        for _ in 0..4 {
+                            executor.each(16, (), &|part, ()| (0..part * 8).for_each(|_| std::hint::spin_loop()));
+                        }
+                    });
+                }
+                say.send(()).unwrap();
+            });
+        }
+        for _ in 0..2 {
+            assert_eq!(hear.recv_timeout(Duration::from_secs(100)), Ok(()), "a step does not end");
+        }
     }
 }

@@ -63,10 +63,17 @@ pub struct Cost {
 /// # Errors
 /// [`ValidationError`] where a mesh cannot be made or a step fails.
 pub fn study(size: Size) -> Result<MultigridStudy, ValidationError> {
-    let (across, cells): (&[usize], &[usize]) = match size {
-        Size::Small => (&[3, 6, 9], &[1_000, 5_000, 16_000]),
-        Size::Full => (&[3, 4, 8, 16, 35], &[1_000, 10_000, 100_000, 1_000_000]),
-    };
+    match size {
+        Size::Small => study_on(size, &[3, 6, 9], &[1_000, 5_000, 16_000]),
+        Size::Full => study_on(size, &[3, 4, 8, 16, 35], &[1_000, 10_000, 100_000, 1_000_000]),
+    }
+}
+
+/// The same on beams with so many cells across, and on livers of about so many tetrahedra.
+///
+/// # Errors
+/// As [`study`].
+pub fn study_on(size: Size, across: &[usize], cells: &[usize]) -> Result<MultigridStudy, ValidationError> {
     let liver = Liver::new(0.3)?;
     let mut rows = Vec::new();
     for &across in across {

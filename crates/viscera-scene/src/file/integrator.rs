@@ -23,7 +23,7 @@ pub struct IntegratorFile {
     /// tissue, long steps and fine meshes; the motion is the same within the tolerance of `linear`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preconditioner: Option<PreconditionerFile>,
-    /// What solves the linear systems of a quasi-static step: "iterative" (the default) or "direct".
+    /// What solves the linear systems of a quasi-static step: "iterative" (the default, which attached bodies need) or "direct".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<SolverFile>,
     /// β of `newmark`, the share of the end in the position; by default 1/4, the average acceleration.

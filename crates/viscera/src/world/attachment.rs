@@ -50,7 +50,8 @@ impl<T: Scalar> World<T> {
     /// every place that they give has the ties in it. A tie that says what others say already counts once.
     ///
     /// # Errors
-    /// [`WorldError::AttachmentNeedsBlockJacobi`] in implicit worlds with multigrid; [`WorldError::AttachedToItself`];
+    /// [`WorldError::AttachmentNeedsBlockJacobi`] in implicit worlds with multigrid;
+    /// [`WorldError::AttachmentNeedsIterative`] in quasi-static ones whose solver factorises; [`WorldError::AttachedToItself`];
     /// [`WorldError::AttachedToPrecomputed`]; [`WorldError::Body`] for a region without nodes;
     /// [`WorldError::TooFarToAttach`] for a node that is nowhere near the other surface. Panics for a body of another world.
     pub fn attach(&mut self, attachment: Attachment) -> Result<AttachmentId, WorldError> {
@@ -60,6 +61,9 @@ impl<T: Scalar> World<T> {
         if matches!(self.config.integrator, Integrator::Implicit(own) if own.preconditioner == Preconditioning::Multigrid)
         {
             return Err(WorldError::AttachmentNeedsBlockJacobi { body: name, to: to_name });
+        }
+        if matches!(self.config.integrator, Integrator::QuasiStatic(_)) && self.static_solver.factorises() {
+            return Err(WorldError::AttachmentNeedsIterative { body: name, to: to_name });
         }
         if body == to {
             return Err(WorldError::AttachedToItself { body: name });

@@ -116,6 +116,16 @@ pub enum WorldError {
         /// Name of the body to which.
         to: String,
     },
+    /// The equations of bodies that are tied are solved by conjugate gradients that know the ties.
+    #[error(
+        "body `{body}` cannot be attached to `{to}` while a factorisation solves the equilibria, as it knows one body each; take the solver `iterative`"
+    )]
+    AttachmentNeedsIterative {
+        /// Name of the body that was to be attached.
+        body: String,
+        /// Name of the body to which.
+        to: String,
+    },
     /// What is pre-computed does not feel the impulses that hold bodies together.
     #[error(
         "body `{body}` cannot be attached: nodes of the model `{model}` do not all move by forces; take one whose nodes do"

@@ -10,7 +10,8 @@ impl<T: Scalar> World<T> {
     }
 
     /// Lets `solver` solve the linear systems of quasi-static steps from now on: a factorisation, where stiffnesses are close to
-    /// singular, or a body has few thousand unknowns.
+    /// singular, or a body has few thousand unknowns. Bodies that are attached to each other keep conjugate gradients to 1e-12, which know
+    /// the ties.
     ///
     /// ```
     /// use viscera::dynamics::quasi_static::QuasiStatic;

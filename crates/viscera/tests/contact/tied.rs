@@ -8,7 +8,7 @@ use viscera::material::{StVenantKirchhoff, Tissue};
 use viscera::math::Mat3;
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::{Precision, TotalLagrangian};
-use viscera::solver::Stop;
+use viscera::solver::{Envelope, Stop};
 use viscera::world::{Attachment, AttachmentId, BodyId, Integrator, Substep, World, WorldError};
 
 use super::support::*;
@@ -305,6 +305,17 @@ fn multigrid_is_refused() {
     let [a, b] = [world.add(body(0.0, "liver")).unwrap(), world.add(body(0.02, "stomach")).unwrap()];
     let refused = world.attach(Attachment { body: b, region: named("y-min"), to: a }).unwrap_err();
     assert_eq!(refused, WorldError::AttachmentNeedsBlockJacobi { body: "stomach".into(), to: "liver".into() });
+}
+
+/// A factorisation too.
+#[test]
+fn factorisation_of_equilibria_is_refused() {
+    let mut world = world::<f64>(GRAVITY, 5e-3, Integrator::QuasiStatic(QuasiStatic::default()));
+    world.set_static_solver(Box::new(Envelope::default()));
+    let body = |low: f64, name: &str| block([1, 1, 1], [0.02; 3], Vector::new(0.0, low, 0.0), 1e4).name(name);
+    let [a, b] = [world.add(body(0.0, "liver")).unwrap(), world.add(body(0.02, "stomach")).unwrap()];
+    let refused = world.attach(Attachment { body: b, region: named("y-min"), to: a }).unwrap_err();
+    assert_eq!(refused, WorldError::AttachmentNeedsIterative { body: "stomach".into(), to: "liver".into() });
 }
 
 /// What jaws hold at a tied node carries what hangs from the other body too.

@@ -1,9 +1,8 @@
 //! The linear system of one iteration of Newton's method.
 
-use super::memory::ImplicitMemory;
 use super::step::Step;
 use super::tangent::Tangent;
-use crate::body::{ExternalStiffness, NodeMotion};
+use crate::body::NodeMotion;
 use crate::contact::Contacts;
 use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -35,29 +34,29 @@ impl<T: Scalar> Step<'_, T> {
         let stiffness = T::from_f64(numbers.place * (1.0 + alpha * numbers.velocity / dt));
         let mass_factor =
             T::from_f64(numbers.inertia / (dt * dt) + numbers.place * numbers.velocity * beta / dt) / stiffness;
-        let time = self.from + numbers.place * (self.drive.end - self.from);
-        // They are not damped as the tissue is.
-        let factor = 1.0 / (1.0 + alpha * numbers.velocity / dt);
-        self.memory.external = (time, factor);
-        let external = ExternalStiffness { loads: &self.body.loads, actuators: &self.body.actuators, time, factor };
         let (state, memory) = (&self.body.state, &mut *self.memory);
+        let matrix = &mut memory.matrix;
+        matrix.stiffness = stiffness;
+        matrix.external_time = self.from + numbers.place * (self.drive.end - self.from);
+        // They are not damped as the tissue is.
+        matrix.external_share = 1.0 / (1.0 + alpha * numbers.velocity / dt);
+        let external = matrix.external(&self.body.loads, &self.body.actuators);
         let executor = self.body.scratch.executor.clone();
-        let masses = (NodeBlocks(&mut memory.masses), ReadBlocks(&state.masses));
+        let masses = (NodeBlocks(&mut matrix.masses), ReadBlocks(&state.masses));
         executor.each(node_blocks(state.masses.len()), masses, &|_, (NodeBlocks(masses), ReadBlocks(nodal))| {
             masses.iter_mut().zip(nodal).for_each(|(mass, &nodal)| *mass = nodal * mass_factor);
         });
         let contacts = &mut self.body.contacts;
         let touches = !contacts.is_empty();
-        memory.stiffness = stiffness;
         memory.rounding = self.stages.run(Stage::Preconditioner, || {
             memory.preconditioner.clear();
-            if memory.matrix.is_none() && memory.multigrid.is_none() {
+            if matrix.assembled.is_none() && memory.multigrid.is_none() {
                 let blocks = memory.preconditioner.blocks_mut();
                 for model in &state.models {
                     model.add_diagonal(&state.positions, &mut self.body.scratch, blocks);
                 }
                 if touches {
-                    set_stiffness(contacts, blocks, stiffness, &memory.masses, &memory.filters);
+                    set_stiffness(contacts, blocks, stiffness, &matrix.masses, &memory.filters);
                     contacts.add_blocks(stiffness.to_f64(), |row, column, block| {
                         memory.preconditioner.add(row, column, block)
                     });
@@ -66,20 +65,20 @@ impl<T: Scalar> Step<'_, T> {
                 let mut sink = Sinks {
                     diagonal: &mut memory.preconditioner,
                     multigrid: memory.multigrid.as_mut(),
-                    matrix: memory.matrix.as_mut(),
+                    matrix: matrix.assembled.as_mut(),
                 };
                 sink.clear();
                 for model in &state.models {
                     model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);
                 }
                 if touches {
-                    set_stiffness(contacts, sink.diagonal.blocks_mut(), stiffness, &memory.masses, &memory.filters);
+                    set_stiffness(contacts, sink.diagonal.blocks_mut(), stiffness, &matrix.masses, &memory.filters);
                     contacts.add_blocks(stiffness.to_f64(), |row, column, block| sink.add(row, column, block));
                 }
             }
             external.for_diagonal(&state.positions, |node, block| memory.preconditioner.add(node, node, block));
-            let rounding = rounding(memory, &state.positions, &executor);
-            memory.preconditioner.invert(&memory.masses, &memory.filters, &executor);
+            let rounding = rounding(memory.preconditioner.blocks_mut(), &state.positions, &executor);
+            memory.preconditioner.invert(&matrix.masses, &memory.filters, &executor);
             rounding
         });
         touches
@@ -88,40 +87,33 @@ impl<T: Scalar> Step<'_, T> {
     /// Solves for the correction of δ, which holds the guess.
     pub(super) fn solve(&mut self) -> Solve {
         let executor = self.body.scratch.executor.clone();
-        let (state, memory) = (&self.body.state, &mut *self.memory);
+        let memory = &mut *self.memory;
         let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));
-        let (stiffness, (time, factor)) = (memory.stiffness, memory.external);
+        let stiffness = memory.matrix.stiffness;
         executor.each(node_blocks(memory.lack.len()), rhs, &|_, (NodeBlocks(rhs), ReadBlocks(lack))| {
             rhs.iter_mut().zip(lack).for_each(|(rhs, &lack)| *rhs = lack * (T::ONE / stiffness));
         });
-        let mut tangent = Tangent {
-            models: &state.models,
-            positions: &state.positions,
-            scratch: &mut self.body.scratch,
-            assembled: memory.matrix.as_mut(),
-            external: ExternalStiffness { loads: &self.body.loads, actuators: &self.body.actuators, time, factor },
-            masses: &memory.masses,
-            contacts: (&self.body.contacts, 1.0 / stiffness.to_f64()),
-            stages: self.stages,
-        };
+        let is_held = |motion: &NodeMotion| matches!(motion, NodeMotion::Held(_));
+        let is_dragged = !self.drive.frames.is_empty() && self.body.state.motions.iter().any(is_held);
+        let mut tangent = Tangent::of(self.body, &mut memory.matrix, self.stages);
+        let masses = tangent.masses;
         let problem = Problem {
             rhs: &memory.rhs,
             filters: &memory.filters,
             prescribed: &memory.prescribed,
-            masses: &memory.masses,
+            masses,
             executor: &executor,
         };
         let stop = self.settings.linear;
         let (diagonal, solver) = (&mut memory.preconditioner, &mut memory.conjugate_gradient);
         let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
             Some(multigrid) => {
-                let (filters, masses) = (&memory.filters, &memory.masses);
-                let mut cycle = multigrid.set_up(&mut tangent, diagonal, filters, masses, &executor);
+                let mut cycle = multigrid.set_up(&mut tangent, diagonal, &memory.filters, masses, &executor);
                 solver.solve(&mut tangent, &mut cycle, &problem, stop, &mut memory.correction)
             }
             None => solver.solve(&mut tangent, diagonal, &problem, stop, &mut memory.correction),
         });
-        if !self.drive.frames.is_empty() && state.motions.iter().any(|motion| matches!(motion, NodeMotion::Held(_))) {
+        if is_dragged {
             tangent.apply(&memory.correction, &mut memory.reactions);
             for (reaction, &rhs) in memory.reactions.iter_mut().zip(&memory.rhs) {
                 *reaction = (*reaction - rhs) * stiffness;
@@ -183,8 +175,8 @@ fn set_stiffness<T: Scalar>(
 }
 
 /// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.
-fn rounding<T: Scalar>(memory: &mut ImplicitMemory<T>, positions: &[Vec3<T>], executor: &Executor) -> f64 {
-    let data = (ReadBlocks(&*memory.preconditioner.blocks_mut()), ReadBlocks(positions));
+fn rounding<T: Scalar>(diagonal: &[Mat3<T>], positions: &[Vec3<T>], executor: &Executor) -> f64 {
+    let data = (ReadBlocks(diagonal), ReadBlocks(positions));
     let square = |(block, x): (&Mat3<T>, &Vec3<T>)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2);
     let work = |_, (ReadBlocks(blocks), ReadBlocks(x)): (ReadBlocks<'_, Mat3<T>>, ReadBlocks<'_, Vec3<T>>)| {
         blocks.iter().zip(x).map(square).sum::<f64>()

@@ -1,3 +1,4 @@
+use super::tangent::StepMatrix;
 use super::{Implicit, MatrixForm, Preconditioning};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
@@ -28,18 +29,12 @@ pub struct ImplicitMemory<T> {
     pub(super) damping: Vec<Vec3<T>>,
     /// Right-hand side of the linear system: what the forces lack, over the factor of the stiffness [N].
     pub(super) rhs: Vec<Vec3<T>>,
-    /// The masses' part of the matrix, over the factor of the stiffness [kg/s²].
-    pub(super) masses: Vec<T>,
-    /// The factor of the stiffness, by which the linear system is divided.
-    pub(super) stiffness: T,
-    /// When actuators and fields have the stiffness that counts [s], and how much it counts beside that of the tissue.
-    pub(super) external: (f64, f64),
+    pub(super) matrix: StepMatrix<T>,
     /// Forces that rounding of the positions makes [N].
     pub(super) rounding: f64,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
-    pub(super) matrix: Option<BlockMatrix<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
     /// What the linear equations of nodes that jaws hold lack to balance [N].
     pub(super) reactions: Vec<Vec3<T>>,
@@ -68,14 +63,17 @@ impl<T: Scalar> ImplicitMemory<T> {
             prescribed: zeros(),
             nodal: zeros(),
             damping: zeros(),
-            masses: vec![T::ZERO; nodes],
-            stiffness: T::ONE,
-            external: (0.0, 1.0),
+            matrix: StepMatrix {
+                stiffness: T::ONE,
+                masses: vec![T::ZERO; nodes],
+                external_time: 0.0,
+                external_share: 1.0,
+                assembled: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, reach)),
+            },
             rounding: 0.0,
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),
-            matrix: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, reach)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
             reactions: zeros(),
             is_linear: false,

@@ -1,11 +1,36 @@
-use super::memory::ImplicitMemory;
-use crate::body::{ExternalStiffness, SimulatedBody};
+use crate::body::{Actuators, ExternalStiffness, NodalLoads, SimulatedBody};
 use crate::contact::Contacts;
 use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ForceModel, Inertia, Scratch};
 use crate::solver::{BlockMatrix, Filtered, LinearOperator, add_weighted, dot, set_weighted};
 use crate::stage::{Stage, Stages};
+
+/// What an implicit step knows of its matrix, which is divided by the factor of the stiffness.
+#[derive(Clone, Debug)]
+pub(super) struct StepMatrix<T> {
+    /// The factor of the stiffness.
+    pub(super) stiffness: T,
+    /// The masses' part, over that factor [kg/s²].
+    pub(super) masses: Vec<T>,
+    /// When actuators and fields have the stiffness that counts [s].
+    pub(super) external_time: f64,
+    /// How much that stiffness counts beside that of the tissue.
+    pub(super) external_share: f64,
+    /// K, where it is assembled.
+    pub(super) assembled: Option<BlockMatrix<T>>,
+}
+
+impl<T: Scalar> StepMatrix<T> {
+    /// The stiffness of fields and actuators.
+    pub(super) fn external<'a>(
+        &self,
+        loads: &'a NodalLoads<T>,
+        actuators: &'a Actuators<T>,
+    ) -> ExternalStiffness<'a, T> {
+        ExternalStiffness { loads, actuators, time: self.external_time, factor: self.external_share }
+    }
+}
 
 /// The matrix of an implicit step over the factor of the stiffness: K, masses on the diagonal, and the springs of contacts.
 pub(super) struct Tangent<'a, T: Scalar> {
@@ -24,16 +49,15 @@ pub(super) struct Tangent<'a, T: Scalar> {
 
 impl<'a, T: Scalar> Tangent<'a, T> {
     /// That of a body whose system is put together.
-    pub(super) fn of(body: &'a mut SimulatedBody<T>, memory: &'a mut ImplicitMemory<T>, stages: Stages<'a>) -> Self {
-        let (time, factor) = memory.external;
+    pub(super) fn of(body: &'a mut SimulatedBody<T>, matrix: &'a mut StepMatrix<T>, stages: Stages<'a>) -> Self {
         Self {
-            external: ExternalStiffness { loads: &body.loads, actuators: &body.actuators, time, factor },
+            external: matrix.external(&body.loads, &body.actuators),
             models: &body.state.models,
             positions: &body.state.positions,
             scratch: &mut body.scratch,
-            assembled: memory.matrix.as_mut(),
-            masses: &memory.masses,
-            contacts: (&body.contacts, 1.0 / memory.stiffness.to_f64()),
+            assembled: matrix.assembled.as_mut(),
+            masses: &matrix.masses,
+            contacts: (&body.contacts, 1.0 / matrix.stiffness.to_f64()),
             stages,
         }
     }

@@ -77,10 +77,10 @@ impl<T: Scalar> ImplicitTies<T> {
             self.correction[span.clone()].copy_from_slice(&memory.correction);
             self.prescribed[span.clone()].copy_from_slice(&memory.prescribed);
             self.filters[span.clone()].copy_from_slice(&memory.filters);
-            for (mass, &own) in self.masses[span.clone()].iter_mut().zip(&memory.masses) {
-                *mass = own * memory.stiffness;
+            for (mass, &own) in self.masses[span.clone()].iter_mut().zip(&memory.matrix.masses) {
+                *mass = own * memory.matrix.stiffness;
             }
-            self.preconditioner.take(span.start, &memory.preconditioner, T::ONE / memory.stiffness);
+            self.preconditioner.take(span.start, &memory.preconditioner, T::ONE / memory.matrix.stiffness);
         }
         let known = self.filters.iter().zip(&self.prescribed);
         self.correction.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
@@ -273,9 +273,9 @@ impl<T: Scalar> SideBySide<'_, T> {
             let span = self.starts[member]..self.starts[member + 1];
             let (body, memory) = (&mut self.bodies[number], &mut self.memories[number]);
             let out = &mut out[span.clone()];
-            Tangent::of(body, memory, self.stages).apply(&x[span], out);
-            if memory.stiffness != T::ONE {
-                out.iter_mut().for_each(|out| *out = *out * memory.stiffness);
+            Tangent::of(body, &mut memory.matrix, self.stages).apply(&x[span], out);
+            if memory.matrix.stiffness != T::ONE {
+                out.iter_mut().for_each(|out| *out = *out * memory.matrix.stiffness);
             }
         }
     }

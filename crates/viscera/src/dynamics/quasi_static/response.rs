@@ -4,12 +4,11 @@
 //! derivative of a misfit is the adjoint state: either way, gradients for one linear solve each. With α = 1/dt² + γ/dt it is the same
 //! for a step of backward Euler.
 
-use super::equilibrium::Widen;
+use super::bodies::Bodies;
 use crate::body::SimulatedBody;
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::model::BlockSink;
-use crate::solver::{BlockMatrix, LinearSolver, SolverError, System};
-use crate::stage::Stages;
+use crate::solver::{LinearSolver, SolverError};
 
 /// Displacements [m] of the nodes for each of `forces` [N, one vector for each node], with the stiffness of the tissue, of
 /// pressures, fields and actuators at `time` [s], and masses that count `inertia` times [1/s², ≥ 0]. Forces on what is held have no effect.
@@ -23,20 +22,13 @@ pub fn respond<T: Scalar>(
     inertia: f64,
     solver: &mut dyn LinearSolver,
 ) -> Result<Vec<Vec<Vec3<f64>>>, SolverError> {
-    body.update_internal_forces(Stages::unobserved());
-    let state = &body.state;
-    let filters = (0..state.motions.len()).map(|node| body.free_directions(node).cast()).collect();
-    let mut system = System { matrix: BlockMatrix::new(&body.mesh, body.reach()), filters };
-    body.is_linearized = false;
-    let (state, mut sink) = (&body.state, Widen { matrix: &mut system.matrix, start: 0 });
-    for model in &state.models {
-        model.linearize(&state.positions, &mut body.scratch);
-        model.add_blocks(&state.positions, &mut body.scratch, &mut sink);
-    }
-    body.add_external_blocks(time, 1.0, &mut sink);
+    let mut body = Bodies::alone(body);
+    body.update_internal_forces();
+    let mut system = body.system();
+    body.assemble(&mut system.matrix, time, 1.0);
     if inertia > 0.0 {
-        for (node, mass) in state.masses.iter().enumerate() {
-            system.matrix.add(node as u32, node as u32, Mat3::diagonal(inertia * mass.to_f64()));
+        for (node, mass) in body.nodal(|body, node| body.state.masses[node].to_f64()).into_iter().enumerate() {
+            system.matrix.add(node as u32, node as u32, Mat3::diagonal(inertia * mass));
         }
     }
     solver.analyse(&system);
