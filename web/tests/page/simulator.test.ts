@@ -242,6 +242,46 @@ for (const engine of ['native', 'wasm'] as const) {
       console.log(`${engine}: 95 of 100 poses are in a frame within ${within.toFixed(0)} ms`);
     });
 
+    test('a finger grasps and drags, and a second one pushes deeper', async () => {
+      const touch = await page.context().newCDPSession(page);
+      const fingers = (
+        type: 'touchStart' | 'touchMove' | 'touchEnd',
+        ...places: { x: number; y: number }[]
+      ) =>
+        touch.send('Input.dispatchTouchEvent', {
+          type,
+          touchPoints: places.map((at, id) => ({ ...at, id })),
+        });
+      await page.getByRole('button', { name: 'Reset (R)' }).click();
+      await expect.poll(() => time(page)).toBeGreaterThan(1);
+      await comeToRest(page);
+      const before = await sag(page);
+      const grip = await place(page, [0.1, 0.02, 0.04]);
+      await fingers('touchStart', grip);
+      await expect.poll(() => holds(page)).toBe(1);
+      const lifted = { x: grip.x + 20, y: grip.y - 110 };
+      for (let part = 1; part <= 8; part++)
+        await fingers('touchMove', {
+          x: grip.x + (part / 8) * (lifted.x - grip.x),
+          y: grip.y + (part / 8) * (lifted.y - grip.y),
+        });
+      await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.005);
+      // Up the page is away from the eye, which looks along −z here.
+      const depth = () =>
+        number(
+          page,
+          ({ frame, chosen }) => frame!.instruments.find(({ instrument }) => instrument === chosen)!.tip[2],
+        );
+      const near = await depth();
+      const second = { x: 100, y: 300 };
+      await fingers('touchStart', lifted, second);
+      await fingers('touchMove', lifted, { ...second, y: second.y - 60 });
+      await expect.poll(depth).toBeLessThan(near - 0.005);
+      await fingers('touchEnd');
+      await expect.poll(() => holds(page)).toBe(0);
+      await touch.detach();
+    });
+
     test('softer tissue sags more, typed and by the slider', async () => {
       const before = await time(page);
       await page.getByRole('button', { name: 'Reset (R)' }).click();
@@ -378,6 +418,27 @@ for (const engine of ['native', 'wasm'] as const) {
       await expect(page.getByText('Drop a mesh, a scene or a recording')).toBeHidden();
       const before = await steps(page);
       await expect.poll(() => steps(page)).toBeGreaterThan(before);
+    });
+
+    test('who comes second watches, and leads when the first has gone', async ({ browser }) => {
+      test.skip(engine === 'wasm', 'a worker has one page');
+      const home = page.url();
+      const second = await browser.newPage({ viewport: { width: 800, height: 500 } });
+      await second.goto(home);
+      await expect(second.locator('.chip')).toContainText('watching');
+      await expect(second.getByRole('button', { name: 'Pause (P)' })).toBeDisabled();
+      await expect.poll(() => steps(second)).toBeGreaterThan(0);
+      // What the first does is seen by both, and the second does nothing.
+      await page.getByRole('button', { name: 'Pause (P)' }).click();
+      await expect.poll(async () => (await state(second)).frame?.state).toBe('paused');
+      expect((await state(second)).scene?.name).toBe((await state(page)).scene?.name);
+      await expect.poll(() => steps(second)).toBe(await steps(page));
+      await page.goto('about:blank');
+      await second.getByRole('button', { name: 'Go on (P)' }).click();
+      await expect.poll(async () => (await state(second)).frame?.state).toBe('running');
+      await second.close();
+      await page.goto(home);
+      await expect(page.getByRole('button', { name: 'Pause (P)' })).toBeEnabled();
     });
 
     test('a restarted program is found again', async () => {

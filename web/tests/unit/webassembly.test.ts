@@ -1,7 +1,13 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
 import { decodeMessage, encodeCommand } from '../../src/engine/encoding';
-import { PROTOCOL_VERSION, type Catalogue, type Command, type Frame, type Message } from '../../src/engine/messages';
+import {
+  PROTOCOL_VERSION,
+  type Catalogue,
+  type Command,
+  type Frame,
+  type Message,
+} from '../../src/engine/messages';
 
 /** The engine as WebAssembly without a browser; `build-engine.sh` makes it. */
 const GENERATED = new URL('../../src/engine/generated/', import.meta.url);
