@@ -245,7 +245,9 @@ fn a_liver_that_was_turned_inside_out_finds_its_shape_again() {
 /// the thorax takes in what the diaphragm leaves it, and no rib changes its shape.
 #[test]
 fn the_diaphragm_moves_the_belly_and_the_abdomen_keeps_its_volume() {
-    let mut built = scene("breathing-trunk.toml", &[]).build::<f64>().unwrap_or_else(|errors| panic!("{errors}"));
+    let mut built = scene("breathing-trunk.toml", &[("duration", "8 s")])
+        .build::<f64>()
+        .unwrap_or_else(|errors| panic!("{errors}"));
     let trunk = built.bodies["trunk"];
     let nodes = |name: &str| -> Vec<usize> {
         let nodes = Region::Named(name.into()).nodes(built.world.body(trunk).mesh()).unwrap();
