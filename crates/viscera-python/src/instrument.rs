@@ -154,6 +154,14 @@ impl AnyInstrument {
         Err(PyTypeError::new_err("an instrument is a Probe, a Grasper or a Cautery"))
     }
 
+    fn mount_mut(&mut self) -> &mut Mount {
+        match self {
+            Self::Probe(probe) => &mut probe.mount,
+            Self::Grasper(grasper) => &mut grasper.mount,
+            Self::Cautery(cautery) => &mut cautery.mount,
+        }
+    }
+
     /// Adds it to a world.
     pub(crate) fn add(&self, world: &mut AnyWorld) -> PyResult<InstrumentId> {
         in_world!(world, world => match self.clone() {
@@ -223,6 +231,24 @@ impl PyTool {
     /// Lets it follow its path again.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
         in_world!(&mut self.world.try_borrow_mut(py)?.world, world => world.release_tool(self.id)).or_raise()
+    }
+
+    /// The point that its shaft passes through [m], or None. Set, the shaft is led through it from the next step on, or let go; the tip
+    /// stays where it is led.
+    #[getter]
+    fn trocar(&self, py: Python<'_>) -> PyResult<Option<[f64; 3]>> {
+        Ok(self.state(py)?.trocar.map(|point| point.to_array()))
+    }
+
+    #[setter]
+    fn set_trocar(&self, py: Python<'_>, trocar: Option<[f64; 3]>) -> PyResult<()> {
+        let (mut world, trocar) = (self.world.try_borrow_mut(py)?, trocar.map(Into::into));
+        in_world!(&mut world.world, world => world.set_trocar(self.id, trocar)).or_raise()?;
+        // What is said about it, a scene says.
+        if let Some(described) = &mut world.instruments[self.id.0].1 {
+            described.mount_mut().trocar = trocar;
+        }
+        Ok(())
     }
 
     /// Takes it out of the world; it lets go of what it holds.

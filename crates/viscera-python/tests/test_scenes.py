@@ -205,6 +205,25 @@ def test_a_body_that_answers_at_once_is_written_to_run_to_the_same_bits(answers,
     assert np.array_equal(again.body("bar").positions, body.positions) and body.max_displacement > 1e-4
 
 
+def test_a_shaft_is_led_through_a_point_and_let_go_and_a_scene_says_so(beam, tmp_path):
+    world, _ = beam()
+    tool = world.add_instrument(viscera.Probe([0, 1, 0]), "rod")
+    assert tool.trocar is None
+    tool.trocar = [0, 1, 0.3]
+    assert tool.trocar == [0, 1, 0.3] and np.allclose(tool.direction, [0, 0, -1])
+    again, _, _ = viscera.Scene.load(world.write_scene(tmp_path, duration=1.0)).build()
+    assert again.instruments["rod"].trocar == [0, 1, 0.3]
+    tool.lead([0.4, 1, 0])
+    world.step()
+    assert np.allclose(tool.direction, [0.8, 0, -0.6])
+    tool.trocar = None
+    tool.lead([0.4, 1, 0], direction=[1, 0, 0])
+    world.step()
+    assert np.allclose(tool.direction, [1, 0, 0])
+    with pytest.raises(viscera.Error):
+        tool.trocar = [0, float("nan"), 0]
+
+
 def led(world):
     world.add_instrument(viscera.Probe(), "hand").lead([0, 1, 0])
 

@@ -1,13 +1,14 @@
 //! Threads change how long a step takes, and nothing else.
 
 use viscera::body::Body;
-use viscera::dynamics::implicit::Implicit;
+use viscera::dynamics::implicit::{Implicit, MatrixForm, Preconditioning, Scheme};
 use viscera::executor::Executor;
 use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, StableNeoHookean, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh};
 use viscera::model::{
-    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, TensorMass, TotalLagrangian,
+    Corotational, IntegrationVolume, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, Rotation,
+    StiffnessWarping, StrainDisplacement, TensorMass, TotalLagrangian,
 };
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep, World, WorldConfig};
@@ -65,22 +66,50 @@ fn end_of_motion<T: Precision>(case: Case, integrator: Integrator, threads: usiz
     world.body(body).positions().to_vec()
 }
 
+fn check<T: Precision>(case: Case, integrator: Integrator) {
+    let name = (case.recipe)().kind();
+    let alone = end_of_motion::<T>(case, integrator, 1);
+    assert!(alone.iter().any(|x| x.y < T::ZERO), "{name:?}: nothing fell");
+    for threads in [2, 8] {
+        let together = end_of_motion::<T>(case, integrator, threads);
+        assert_eq!(together, alone, "{name:?} on {threads} threads, {integrator:?}");
+    }
+}
+
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    fn check<T: Precision>() {
-        let implicit = Implicit { linear: Stop::Iterations(10), ..Implicit::default() };
-        for case in CASES {
-            for integrator in [Integrator::Explicit(Substep::Automatic), Integrator::Implicit(implicit)] {
-                let name = (case.recipe)().kind();
-                let alone = end_of_motion::<T>(case, integrator, 1);
-                assert!(alone.iter().any(|x| x.y < T::ZERO), "{name:?}: nothing fell");
-                for threads in [2, 8] {
-                    let together = end_of_motion::<T>(case, integrator, threads);
-                    assert_eq!(together, alone, "{name:?} on {threads} threads, {integrator:?}");
-                }
-            }
+    let implicit = Implicit { linear: Stop::Iterations(10), ..Implicit::default() };
+    for case in CASES {
+        for integrator in [Integrator::Explicit(Substep::Automatic), Integrator::Implicit(implicit)] {
+            check::<f32>(case, integrator);
+            check::<f64>(case, integrator);
         }
     }
-    check::<f32>();
-    check::<f64>();
+}
+
+/// The same for every other way to take an implicit step, and every other corotational element.
+#[test]
+fn bits_of_other_solvers_and_variants_do_not_either() {
+    let few = Stop::Iterations(6);
+    let falling = Case { recipe: || Box::new(TotalLagrangian::new(stable())), hexahedra: false };
+    for settings in [
+        Implicit { linear: few, matrix: MatrixForm::Assembled, ..Implicit::default() },
+        Implicit { linear: few, preconditioner: Preconditioning::Multigrid, ..Implicit::default() },
+        Implicit { linear: Stop::Iterations(40), ..Implicit::accurate(Scheme::BackwardEuler) },
+        Implicit { linear: Stop::Iterations(40), ..Implicit::accurate(Scheme::AVERAGE_ACCELERATION) },
+        Implicit { linear: Stop::Iterations(40), ..Implicit::accurate(Scheme::Bdf2) },
+    ] {
+        check::<f64>(falling, Integrator::Implicit(settings));
+    }
+    let variants: [fn() -> Box<dyn ModelRecipe>; 5] = [
+        || Box::new(Corotational::new(linear()).rotation(Rotation::Qr)),
+        || Box::new(Corotational::new(linear()).rotation(Rotation::Svd)),
+        || Box::new(Corotational::new(linear()).strain_displacement(StrainDisplacement::Updated)),
+        || Box::new(Corotational::new(linear()).volume(IntegrationVolume::Current)),
+        || Box::new(StiffnessWarping::new(linear())),
+    ];
+    for recipe in variants {
+        let settings = Implicit { linear: few, ..Implicit::default() };
+        check::<f32>(Case { recipe, hexahedra: false }, Integrator::Implicit(settings));
+    }
 }
