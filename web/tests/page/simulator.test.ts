@@ -277,6 +277,9 @@ for (const engine of ['native', 'wasm'] as const) {
       await fingers('touchStart', lifted, second);
       await fingers('touchMove', lifted, { ...second, y: second.y - 60 });
       await expect.poll(depth).toBeLessThan(near - 0.005);
+      // And back: the block will begin anew where the jaws would be.
+      await fingers('touchMove', lifted, second);
+      await expect.poll(depth).toBeGreaterThan(near - 0.002);
       await fingers('touchEnd');
       await expect.poll(() => holds(page)).toBe(0);
       await touch.detach();

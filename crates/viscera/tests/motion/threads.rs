@@ -6,9 +6,10 @@ use viscera::executor::Executor;
 use viscera::material::{Lame, LinearElastic, StVenantKirchhoff, StableNeoHookean, Tissue};
 use viscera::math::Vec3;
 use viscera::mesh::{HexMesh, Region, TetMesh};
+use viscera::model::corotational::{IntegrationVolume, Rotation, StrainDisplacement};
 use viscera::model::{
-    Corotational, IntegrationVolume, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, Rotation,
-    StiffnessWarping, StrainDisplacement, TensorMass, TotalLagrangian,
+    Corotational, LinearTensorMass, ModelRecipe, NodallyIntegrated, Precision, StiffnessWarping, TensorMass,
+    TotalLagrangian,
 };
 use viscera::solver::Stop;
 use viscera::world::{Integrator, Substep, World, WorldConfig};
