@@ -208,6 +208,29 @@ fn the_ghost_is_the_same_body_with_the_linear_law() {
     assert_eq!((page.scene().bodies.len(), page.frame().bodies.len()), (1, 1));
 }
 
+/// A tool that was pressed into tissue, and around which it begins anew, is drawn back along its shaft: the tissue hung on it, or could make
+/// no step at all.
+#[test]
+fn a_new_beginning_draws_tools_out_of_the_tissue() {
+    let mut page = Page::open(BAR);
+    let rest = page.surfaces[0].rest.0.clone();
+    let middle: [f64; 3] = std::array::from_fn(|axis| {
+        let of_axis = || rest.iter().skip(axis).step_by(3).map(|&x| f64::from(x));
+        0.5 * (of_axis().fold(f64::MAX, f64::min) + of_axis().fold(f64::MIN, f64::max))
+    });
+    let tool = page.add("probe", [middle[0], middle[1] + 0.2, middle[2]], [0.0, -1.0, 0.0]);
+    page.lead(tool, middle, 0.0);
+    page.say(Command::Reset {});
+    let tip = page.frame().instruments[0].tip;
+    let top = rest.iter().skip(1).step_by(3).fold(f32::MIN, |top, &y| top.max(y));
+    let aside = (tip[0] - middle[0]).abs() + (tip[2] - middle[2]).abs();
+    assert!(tip[1] > f64::from(top) && aside < 1e-12, "{tip:?} from {middle:?}");
+    page.step(30);
+    let mut untouched = Page::open(BAR);
+    untouched.step(30);
+    assert_eq!(page.positions(0), untouched.positions(0));
+}
+
 /// What the engine refuses stops the clock with its reason; a reset goes on.
 #[test]
 fn a_step_that_is_refused_stops_with_its_reason() {
