@@ -120,10 +120,8 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let (x, arms): (Vec<_>, Vec<_>) = (x.iter().map(|x| x.cast()).collect(), self.shape.rest_arms());
-        let frame = Frame::along(&x);
-        let displacement = |node: u32| frame.displacement(x[node as usize], arms[node as usize]);
-        self.vertices.energy(displacement) + self.edges.energy(displacement)
+        let displacement = self.shape.displacements(x, |_| Frame::along(x));
+        self.vertices.energy(&displacement) + self.edges.energy(&displacement)
     }
 
     fn remove(&mut self, cells: &[u32]) {

@@ -7,15 +7,17 @@ use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, Stages};
 
-/// How often a step that is not solved in full is made again in twice as many parts.
+/// How often a step that is not solved, or that throws tissue across a hump, is made again in twice as many parts.
 const MOST_DIVISIONS: u32 = 6;
 
-/// A body, and what its solver did.
-type Unsolved = (usize, ImplicitReport);
+/// A body whose step is not to be taken: it is not solved, or it gained energy from nobody.
+type Refused = (usize, ImplicitReport);
 
 impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
     /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
+    /// So are steps that leave the numbers that there are, and those of backward Euler that gain energy. A linearised one that still does in
+    /// the shortest parts is taken.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,
@@ -25,9 +27,11 @@ impl<T: Scalar> World<T> {
         let mut retries = 0;
         loop {
             let parts = stages.run(Stage::Instruments, || self.approach_in_time(span)) << retries;
-            let (report, unsolved) = self.advance_implicitly(span, settings, parts, stages);
+            let is_last = retries == MOST_DIVISIONS;
+            let takes_gain = is_last && settings.newton == Newton::Linearised;
+            let (report, refused) = self.advance_implicitly(span, settings, (parts, takes_gain), stages);
             let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
-            let error = match unsolved {
+            let error = match refused {
                 _ if !within => {
                     self.undo();
                     self.diverged()
@@ -35,7 +39,7 @@ impl<T: Scalar> World<T> {
                 Some((number, own)) => self.not_converged(number, &own),
                 None => return Ok(Motion { substeps: parts, retries, implicit: Some(report) }),
             };
-            if settings.newton == Newton::Linearised || retries == MOST_DIVISIONS {
+            if is_last {
                 return Err(error);
             }
             self.undo();
@@ -43,16 +47,16 @@ impl<T: Scalar> World<T> {
         }
     }
 
-    /// Moves all bodies by equal parts of the step; gives what the solvers did, and the first body whose full equations were not solved.
+    /// Moves all bodies by equal parts of the step, those that gain energy too if it is told to; gives what the solvers did, and the first body whose step is not to be taken.
     fn advance_implicitly(
         &mut self,
         span: &Span,
         settings: &Implicit,
-        parts: u32,
+        (parts, takes_gain): (u32, bool),
         stages: Stages,
-    ) -> (ImplicitReport, Option<Unsolved>) {
+    ) -> (ImplicitReport, Option<Refused>) {
         let gravity = Vec3::from(self.config.gravity).cast();
-        let (mut report, mut unsolved) = (ImplicitReport::NOTHING, None);
+        let (mut report, mut refused) = (ImplicitReport::NOTHING, None);
         self.begin_attachments();
         let share = |part: u32| f64::from(part) / f64::from(parts);
         for part in 0..parts {
@@ -70,9 +74,11 @@ impl<T: Scalar> World<T> {
                     continue;
                 }
                 let all = (&mut self.bodies[..], &mut self.implicit[..]);
-                let own = stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, stages));
-                if !own.converged && settings.newton != Newton::Linearised {
-                    unsolved = unsolved.or(Some((number, own)));
+                let (own, has_gained) =
+                    stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, stages));
+                let is_unsolved = !own.converged && settings.newton != Newton::Linearised;
+                if is_unsolved || (has_gained && !takes_gain) {
+                    refused = refused.or(Some((number, own)));
                 }
                 report = report.worst(own);
             }
@@ -80,11 +86,11 @@ impl<T: Scalar> World<T> {
             for tied in &self.tied {
                 tied.each_impulse(|number, impulse| self.attachments[number].impulse += impulse);
             }
-            if unsolved.is_some() {
+            if refused.is_some() {
                 break;
             }
         }
-        (report, unsolved)
+        (report, refused)
     }
 
     /// Lets instruments take hold or let go, and has all tissue looked at that is near one that touches; gives in how many parts the

@@ -27,15 +27,16 @@ pub(crate) struct Interval<'a, T> {
 }
 
 /// Advances bodies that are solved together, in memory of their own, by one step; of all `bodies` of a world and the memory of each.
+/// Gives whether they gained energy, and not from anybody, as well.
 pub(crate) fn advance<T: Scalar>(
     (bodies, memories): (&mut [SimulatedBody<T>], &mut [ImplicitMemory<T>]),
     together: Together<'_, T>,
     settings: &Implicit,
     interval: Interval<'_, T>,
     stages: Stages,
-) -> ImplicitReport {
+) -> (ImplicitReport, bool) {
     let numbers = settings.scheme.numbers(false);
-    let mut group = Group { bodies, memories, together, settings, numbers, interval, stages };
+    let mut group = Group { bodies, memories, together, settings, numbers, interval, stages, went_astray: false };
     group.agree_on_past();
     group.begin();
     let mut report = group.solve();
@@ -46,9 +47,10 @@ pub(crate) fn advance<T: Scalar>(
         group.each(|step| step.start_again());
         report = report.then(group.solve());
     }
+    let has_gained = group.has_gained();
     group.each(|step| step.finish());
     group.finish_ties();
-    report
+    (report, has_gained)
 }
 
 /// Bodies that are solved together, in one implicit step.
@@ -60,6 +62,8 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) numbers: Numbers,
     pub(super) interval: Interval<'a, T>,
     pub(super) stages: Stages<'a>,
+    /// Whether a linearised step had to be solved in full instead.
+    pub(super) went_astray: bool,
 }
 
 /// Tied bodies, all bodies of their world, and the memory of each.

@@ -23,6 +23,7 @@ mod backward_euler;
 mod balance;
 mod bdf2;
 mod correction;
+mod energy;
 mod energy_momentum;
 mod group;
 mod memory;

@@ -67,6 +67,7 @@ impl<T: Scalar> Group<'_, T> {
             self.each(|step| step.memory.increment.fill(Vec3::ZERO));
         }
         let (relative, at_most) = INSTEAD;
+        self.went_astray = true;
         let report = self.solve_in_full(relative, at_most);
         ImplicitReport {
             linear_iterations: solve.iterations + report.linear_iterations,

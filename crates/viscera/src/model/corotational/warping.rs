@@ -147,15 +147,18 @@ impl<T: Scalar> WarpedTets<T> {
 
     /// Brings the fit of a node up to date with the edges that are left there.
     fn fit(&mut self, node: usize) {
-        let (starts, edges) = &self.edges_at_nodes;
-        let here = edges[starts[node] as usize..starts[node + 1] as usize].iter();
-        let left = here.map(|&edge| &self.edges[edge as usize]).filter(|edge| edge.cells > 0);
-        let mut fit = Mat3::ZERO;
-        left.for_each(|edge| fit += edge.rest.outer(edge.rest));
+        let fit = self.edges_at(node).fold(Mat3::ZERO, |sum, edge| sum + edge.rest.outer(edge.rest));
         // In units of its own size, as the determinant is its third power. A node without cells has nothing to fit.
         let unit = T::ONE / fit.trace();
         let inverse = (fit * unit).inverse() * unit;
         self.fits[node] = if inverse.is_finite() { inverse } else { Mat3::ZERO };
+    }
+
+    /// Edges of a node that cells have left.
+    fn edges_at(&self, node: usize) -> impl Iterator<Item = &Edge<T>> {
+        let (starts, edges) = &self.edges_at_nodes;
+        let here = edges[starts[node] as usize..starts[node + 1] as usize].iter();
+        here.map(|&edge| &self.edges[edge as usize]).filter(|edge| edge.cells > 0)
     }
 
     /// R of every node at `x`, nine numbers each.
@@ -173,6 +176,15 @@ impl<T: Scalar> WarpedTets<T> {
             let r = polar(&(read(rotations, node) * fit));
             write(rotations, node, &r);
         }
+    }
+
+    /// R of one node at `x`.
+    fn rotation(&self, node: usize, x: &[Vec3<T>]) -> Mat3<T> {
+        let moved = |edge: &Edge<T>| {
+            let [from, to] = edge.nodes.map(|node| x[node as usize]);
+            (to - from).outer(edge.rest)
+        };
+        polar(&(self.edges_at(node).map(moved).fold(Mat3::ZERO, |sum, moved| sum + moved) * self.fits[node]))
     }
 
     /// The rotations that products use: those that were kept for them, or those at `x`.
@@ -282,12 +294,10 @@ impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
 
     /// ½ V ε:σ(ε), the mean over the corners' rotations: a measure of deformation, not a potential of the forces.
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let mut rotations = vec![T::ZERO; ROTATION * self.fits.len()];
-        self.rotate(x, &mut rotations);
         let of_cell = |cell: &Cell<T>| {
             let f = cell.gradient(x);
             let of_corner = |node: u32| {
-                let strain = (read(&rotations, node as usize).transpose() * f - Mat3::IDENTITY).symmetric_part();
+                let strain = (self.rotation(node as usize, x).transpose() * f - Mat3::IDENTITY).symmetric_part();
                 (cell.hooke.energy(strain) * cell.volume).to_f64()
             };
             0.25 * cell.corners.into_iter().map(of_corner).sum::<f64>()

@@ -19,7 +19,7 @@ pub(crate) struct Frame<T> {
 
 impl<T: Scalar> Frame<T> {
     /// The frame that moves along with nodes now at `x` and does not turn: for forces that turning changes.
-    pub(crate) fn along(x: &[Vec3<T>]) -> Self {
+    pub(crate) fn along<U: Scalar>(x: &[Vec3<U>]) -> Self {
         let first = x.first().map_or(Vec3::ZERO, |x| x.cast::<f64>());
         let sum = x.iter().fold(Vec3::ZERO, |sum, x| sum + (x.cast::<f64>() - first));
         let centre = first + sum / x.len().max(1) as f64;
@@ -27,11 +27,11 @@ impl<T: Scalar> Frame<T> {
     }
 
     /// The frame that also turns with the nodes, whose places at rest, counted from their mean, are `arms`.
-    pub(super) fn following(x: &[Vec3<T>], arms: &[Vec3<T>]) -> Self {
+    pub(super) fn following<U: Scalar>(x: &[Vec3<U>], arms: impl Iterator<Item = Vec3<T>>) -> Self {
         let Self { centre, .. } = Self::along(x);
         let mut covariance = Mat3::<f64>::ZERO;
         for (x, arm) in x.iter().zip(arms) {
-            let (from_centre, arm) = ((*x - centre).cast::<f64>(), arm.cast::<f64>());
+            let (from_centre, arm) = ((x.cast::<T>() - centre).cast::<f64>(), arm.cast::<f64>());
             for (column, component) in covariance.columns.iter_mut().zip(arm.to_array()) {
                 *column += from_centre * component;
             }

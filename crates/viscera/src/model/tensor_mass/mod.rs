@@ -122,7 +122,7 @@ struct TensorMassModel<T: Scalar> {
 impl<T: Scalar> TensorMassModel<T> {
     /// The frame that follows the body. The linear part of an adaptive model knows no rotations.
     fn frame(&self, x: &[Vec3<T>]) -> Frame<T> {
-        if self.squared_threshold.is_some() { Frame::along(x) } else { Frame::following(x, &self.arms) }
+        if self.squared_threshold.is_some() { Frame::along(x) } else { Frame::following(x, self.arms.iter().copied()) }
     }
 
     /// Makes displacements in the frame of places, and sets the weight of the non-linear part.
@@ -200,13 +200,11 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
 
     /// Energy of the full law, also where an adaptive model is linear.
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
-        let (x, arms): (Vec<_>, Vec<_>) = (x.iter().map(|x| x.cast()).collect(), self.shape.rest_arms());
-        let frame = Frame::following(&x, &arms);
-        let displacement = |node: u32| frame.displacement(x[node as usize], arms[node as usize]);
-        self.vertices.energy(displacement)
-            + self.edges.energy(displacement)
-            + self.triangles.energy(displacement)
-            + self.tetrahedra.energy(displacement)
+        let displacement = self.shape.displacements(x, |arms| Frame::following(x, arms));
+        self.vertices.energy(&displacement)
+            + self.edges.energy(&displacement)
+            + self.triangles.energy(&displacement)
+            + self.tetrahedra.energy(&displacement)
     }
 
     fn remove(&mut self, cells: &[u32]) {

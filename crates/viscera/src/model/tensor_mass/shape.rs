@@ -2,6 +2,7 @@
 
 use super::entity::Entity;
 use super::entity_loop::{Assembly, EntityLoop};
+use super::frame::Frame;
 use super::tensors::TetTensors;
 use crate::material::{RestStiffness, Tissue};
 use crate::math::{Scalar, Vec3};
@@ -45,9 +46,25 @@ impl RestShape {
 
     /// Places at rest, counted from their mean.
     pub(crate) fn rest_arms<T: Scalar>(&self) -> Vec<Vec3<T>> {
+        let mean = self.rest_mean();
+        self.mesh.nodes.iter().map(|&node| (node - mean).cast()).collect()
+    }
+
+    /// The mean place at rest.
+    fn rest_mean(&self) -> Vec3<f64> {
         let nodes = &self.mesh.nodes;
-        let mean = nodes.iter().fold(Vec3::ZERO, |sum, &node| sum + node) / nodes.len().max(1) as f64;
-        nodes.iter().map(|&node| (node - mean).cast()).collect()
+        nodes.iter().fold(Vec3::ZERO, |sum, &node| sum + node) / nodes.len().max(1) as f64
+    }
+
+    /// Displacements of nodes at `x` as `frame` sees them, in double precision.
+    pub(crate) fn displacements<T: Scalar>(
+        &self,
+        x: &[Vec3<T>],
+        frame: impl FnOnce(&mut dyn Iterator<Item = Vec3<f64>>) -> Frame<f64>,
+    ) -> impl Fn(u32) -> Vec3<f64> {
+        let mean = self.rest_mean();
+        let frame = frame(&mut self.mesh.nodes.iter().map(|&node| node - mean));
+        move |node: u32| frame.displacement(x[node as usize].cast(), self.mesh.nodes[node as usize] - mean)
     }
 
     /// Table of the vertices.

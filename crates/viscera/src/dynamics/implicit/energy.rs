@@ -1,0 +1,72 @@
+//! Energy over a step of backward Euler, which gains none where its equations have one solution.
+//!
+//! With w = δ/Δt and forces R of loads at the end, M (w − v)/Δt = R − ∇V(x⁺) makes the change of the kinetic energy
+//!
+//! ½ w·M w − ½ v·M v = δ·R − δ·∇V(x⁺) − ½ (w − v)·M (w − v)
+//!
+//! and V(x⁺) − V(x) ≤ δ·∇V(x⁺) where V is convex between the two places. So what kinetic and elastic energy grow beyond the work
+//! δ·R tells of tissue that is not convex over so long a step: it was thrown across a hump. Over a shorter one masses count
+//! for more.
+
+use super::group::Group;
+use super::step::Step;
+use super::{Newton, Scheme};
+use crate::body::NodeMotion;
+use crate::dynamics::tied::Together;
+use crate::math::{Scalar, Vec3};
+use crate::solver::Filter;
+
+/// A step that is solved in full gains no more than this share of the energies that are about.
+const GAIN: f64 = 1e-6;
+/// A linearised step that went astray gains no more than this share.
+const GAIN_ASTRAY: f64 = 0.01;
+
+impl<T: Scalar> Group<'_, T> {
+    /// Whether the step that is solved gained energy, and not from anybody. Tools, ties and driven nodes may give some.
+    pub(super) fn has_gained(&mut self) -> bool {
+        let share = match self.settings.newton {
+            Newton::Full { .. } => GAIN,
+            Newton::Linearised if self.went_astray => GAIN_ASTRAY,
+            Newton::Linearised => return false,
+        };
+        let is_alone = matches!(self.together, Together::Alone(_));
+        is_alone && self.settings.scheme == Scheme::BackwardEuler && self.member(0).has_gained(share)
+    }
+}
+
+impl<T: Scalar> Step<'_, T> {
+    fn has_gained(&self, share: f64) -> bool {
+        let (body, memory, state) = (&*self.body, &*self.memory, &self.body.state);
+        if body.followers.is_some() || !body.contacts.is_empty() || self.is_led() {
+            return false;
+        }
+        let (mut kinetic, mut work) = ([0.0; 2], 0.0);
+        let (mut forces, mut places) = (0.0, 0.0);
+        for node in 0..state.positions.len() {
+            let energy = |v: Vec3<T>| 0.5 * (state.masses[node] * v.squared_norm()).to_f64();
+            kinetic[0] += energy(memory.velocities[node]);
+            kinetic[1] += energy(self.end_velocity(node));
+            work += body.external_forces[node].dot(memory.increment[node]).to_f64();
+            forces += state.internal_forces[node].squared_norm().to_f64();
+            places += state.positions[node].squared_norm().to_f64();
+        }
+        let elastic = |x: &[Vec3<T>]| state.models.iter().map(|model| model.energy(x)).sum::<f64>();
+        let elastic = [elastic(&memory.start), elastic(&state.positions)];
+        let gain = kinetic[1] + elastic[1] - kinetic[0] - elastic[0] - work;
+        let about = kinetic[0] + elastic[0].abs() + elastic[1].abs() + work.abs();
+        // What rounding of the places makes of the elastic energies, and of what adds up to nothing near rest.
+        let rounding = T::EPSILON.to_f64() * (8.0 * (forces * places).sqrt() + 64.0 * about);
+        let rounding = rounding + memory.rounding * places.sqrt();
+        gain > share * about + rounding
+    }
+
+    /// Whether nodes are taken along by anything.
+    fn is_led(&self) -> bool {
+        let (memory, motions) = (&*self.memory, &self.body.state.motions);
+        let goes = |node: usize| {
+            let (way, filter) = (memory.coast[node], &memory.filters[node]);
+            *filter != Filter::Free && way != filter.apply(way)
+        };
+        (0..motions.len()).any(|node| matches!(motions[node], NodeMotion::Held(_)) || goes(node))
+    }
+}
