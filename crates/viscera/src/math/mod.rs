@@ -3,7 +3,6 @@
 mod dual;
 mod lanes;
 mod mat3;
-mod pair;
 mod real;
 pub mod rotation;
 mod sym3;
@@ -13,7 +12,6 @@ pub use dual::Dual;
 pub(crate) use lanes::baseline;
 pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level, with_level};
 pub use mat3::Mat3;
-pub(crate) use pair::Pair;
 pub use real::Real;
 pub use sym3::Sym3;
 pub use vec3::Vec3;

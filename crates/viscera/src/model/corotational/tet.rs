@@ -7,10 +7,10 @@ use fearless_simd::Simd;
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
-use super::lane_vector::load;
+use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Pair, Real, Scalar, Sym3, Vec3};
+use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
@@ -235,26 +235,17 @@ impl<T: Scalar> Record<T> for Turning<'_, T> {
     }
 
     #[inline(always)]
-    fn record<S: Simd>(
-        &self,
-        simd: S,
-        slots: [usize; 2],
-        edges: &Mat3<Pair<T::Lanes<S>>>,
-        mut keep: impl FnMut(usize, Vec3<Pair<T::Lanes<S>>>),
-    ) {
-        let [one, other] = slots.map(|slot| self.0.load(simd, slot));
-        let (inverse, volume) = (Mat3::paired(&one.inverse, &other.inverse), Pair(one.volume, other.volume));
-        let formulation = &self.0.formulation;
+    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) {
+        let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
         let f = *edges * inverse;
         let r = formulation.rotation(&f);
         let (transport, scale) = formulation.transport(&r, &f);
         let gradients = transport * inverse.transpose() * (volume * scale).sqrt();
         for i in 0..3 {
-            keep(3 * i, gradients.columns[i]);
+            store(gradients.columns[i], &mut row[3 * i * T::LANES..]);
         }
-        if let (Some((one, _)), Some((other, _))) = (one.hooke.fibre, other.hooke.fibre) {
-            let pair = |one, other| Pair(one, other);
-            keep(GRADIENTS, r * Vec3::new(pair(one.x, other.x), pair(one.y, other.y), pair(one.z, other.z)));
+        if let Some((direction, _)) = hooke.fibre {
+            store(r * direction, &mut row[GRADIENTS * T::LANES..]);
         }
     }
 }

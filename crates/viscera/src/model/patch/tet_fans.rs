@@ -4,7 +4,7 @@ use super::fan::{Fan, fans};
 use super::visitor::{Keep, Largest, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
-use crate::math::{Lanes, MAX_LANES, Mat3, Pair, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::{Inertia, Sums};
 
@@ -278,10 +278,8 @@ impl TetFans {
             let mut places = no_rows();
             self.patches.gather(patch, &[x], &mut places);
             let first = self.slot_starts[patch];
-            dispatch!(dispatch_level(), simd => {
-                self.walk(simd, patch, &places, &mut Keep { values: &mut *part.values, first, block });
-                record_pairs(simd, record, first, part.values);
-            });
+            let mut keep = Keep { record, values: part.values, first, block };
+            dispatch!(dispatch_level(), simd => self.walk(simd, patch, &places, &mut keep));
         });
     }
 
@@ -374,41 +372,10 @@ pub(crate) trait Diagonal<T: Scalar>: Sync {
 
 /// What a loop keeps of tetrahedra, as a function of their edges.
 pub(crate) trait Record<T: Scalar>: Sync {
-    /// How many numbers it keeps of each [≥ 9].
+    /// How many numbers it keeps of each.
     fn columns(&self) -> usize;
-    /// Gives the columns of the blocks of two slots at a time to `keep`, one column of both after the other.
-    fn record<S: Simd>(
-        &self,
-        simd: S,
-        slots: [usize; 2],
-        edges: &Mat3<Pair<T::Lanes<S>>>,
-        keep: impl FnMut(usize, Vec3<Pair<T::Lanes<S>>>),
-    );
-}
-
-/// Makes what `record` keeps of the edges that stand in `values`, the blocks from slot `first` on. Nothing waits for a gather
-/// there, and two slots at a time wait for each other's roots and quotients.
-#[inline(always)]
-fn record_pairs<T: Scalar, S: Simd>(simd: S, record: &impl Record<T>, first: usize, values: &mut [T]) {
-    let block = record.columns() * T::LANES;
-    let last = (values.len() / block).saturating_sub(1);
-    for slot in (0..values.len() / block).step_by(2) {
-        let slots = [slot, (slot + 1).min(last)];
-        let edges = slots.map(|slot| {
-            let number = |column: usize| T::Lanes::<S>::load(simd, &values[slot * block + column * T::LANES..]);
-            let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
-            Mat3::from_columns(vector(0), vector(3), vector(6))
-        });
-        let edges = Mat3::paired(&edges[0], &edges[1]);
-        record.record(simd, slots.map(|slot| first + slot), &edges, |column, vector| {
-            let numbers = vector.to_array();
-            for i in 0..3 {
-                let place = (column + i) * T::LANES;
-                numbers[i].0.store(&mut values[slots[0] * block + place..]);
-                numbers[i].1.store(&mut values[slots[1] * block + place..]);
-            }
-        });
-    }
+    /// Writes the block of rows of a slot.
+    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, block: &mut [T]);
 }
 
 /// A number of tetrahedra, as a function of their edges.

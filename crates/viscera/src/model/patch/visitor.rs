@@ -2,7 +2,7 @@
 
 use fearless_simd::Simd;
 
-use super::tet_fans::{Diagonal, Element, Measure};
+use super::tet_fans::{Diagonal, Element, Measure, Record};
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
 
@@ -105,24 +105,19 @@ fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], 
     add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
 }
 
-/// Writes the edges of each slot to the first nine columns of its block.
-pub(super) struct Keep<'a, T> {
+/// Writes rows, slot by slot.
+pub(super) struct Keep<'a, T, R> {
+    pub(super) record: &'a R,
     pub(super) values: &'a mut [T],
     pub(super) first: usize,
     pub(super) block: usize,
 }
 
-impl<T: Scalar, S: Simd> Visitor<T, S, 1> for Keep<'_, T> {
+impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
     #[inline(always)]
-    fn tetrahedron(&mut self, _simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
         let start = (slot - self.first) * self.block;
-        let block = &mut self.values[start..start + self.block];
-        // Plain loops: stores through chained iterators were not inlined, and took as long as the rotations.
-        for (i, column) in edges[0].columns.into_iter().enumerate() {
-            column.x.store(&mut block[3 * i * T::LANES..]);
-            column.y.store(&mut block[(3 * i + 1) * T::LANES..]);
-            column.z.store(&mut block[(3 * i + 2) * T::LANES..]);
-        }
+        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
     }
 }
 
