@@ -15,9 +15,6 @@ use crate::{Size, ValidationError};
 /// Deformations that each element is put in.
 pub(super) const DEFORMATIONS: usize = 10;
 
-/// log10 of the edge of a cube over its shortest height when its corners are shifted at random by a fifth of it.
-const DISTORTED: f64 = 0.9;
-
 /// What became of the elements of a combination in one precision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementTally {
@@ -81,9 +78,8 @@ pub(super) fn attempt<T: Precision>(
 
 struct Element {
     mesh: VolumeMesh,
-    /// log10 of the unit that its places lie within over its shortest height: four places at random lie nearly in a plane now and then.
+    /// Length of its longest edge over that of its shortest height, and log10 of its size.
     slimness: f64,
-    /// log10 of that unit [m].
     size: f64,
 }
 
@@ -98,19 +94,19 @@ impl Element {
         };
         let slimness = if random.below(5) == 0 { 6.0 * random.signed().abs() } else { 0.0 };
         let flat = Vector::new(1.0, 1.0, 10f64.powf(-slimness));
-        let flattened = |x: Vector| Vector::new(x.x * flat.x, x.y * flat.y, x.z * flat.z);
-        let place = |x: Vector| flattened(x) * 10f64.powf(size);
-        if cells == Cells::Hexahedra {
+        let place = |x: Vector| Vector::new(x.x * flat.x, x.y * flat.y, x.z * flat.z) * 10f64.powf(size);
+        let mesh = if cells == Cells::Hexahedra {
             let mut mesh = HexMesh::box_grid([1; 3], [1.0; 3]);
             mesh.nodes.iter_mut().for_each(|node| *node = place(*node + random.vector() * 0.2));
-            return Self { mesh: mesh.into(), slimness: slimness + DISTORTED, size };
-        }
-        let mut corners = [(); 4].map(|()| random.vector());
-        if (corners[1] - corners[0]).dot((corners[2] - corners[0]).cross(corners[3] - corners[0])) < 0.0 {
-            corners.swap(2, 3);
-        }
-        let slimness = -shortest_height(corners.map(flattened)).log10();
-        Self { mesh: TetMesh::new(corners.map(place).to_vec(), vec![[0, 1, 2, 3]]).into(), slimness, size }
+            mesh.into()
+        } else {
+            let mut corners = [(); 4].map(|()| random.vector());
+            if (corners[1] - corners[0]).dot((corners[2] - corners[0]).cross(corners[3] - corners[0])) < 0.0 {
+                corners.swap(2, 3);
+            }
+            TetMesh::new(corners.map(place).to_vec(), vec![[0, 1, 2, 3]]).into()
+        };
+        Self { mesh, slimness, size }
     }
 
     /// Puts it in a deformation and asks for everything.
@@ -157,15 +153,8 @@ impl Element {
     /// neo-Hookean tissue) times a modulus, and the fourth power of lengths and of their inverses.
     fn is_in_range<T: Scalar>(&self, stretch: f64, young: f64) -> bool {
         let most = if size_of::<T>() == 4 { 38.0 } else { 308.0 };
-        let stretch = stretch.max(0.0) + self.slimness + 0.6;
+        let stretch = stretch.max(0.0) + self.slimness + 1.5;
         let length = self.size.abs() + self.slimness + 0.5;
         8.0 * stretch + young.log10() + 4.0 * length < most
     }
-}
-
-/// The shortest height of a tetrahedron.
-fn shortest_height([a, b, c, d]: [Vector; 4]) -> f64 {
-    let doubled = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p).norm();
-    let largest = doubled(b, c, d).max(doubled(a, c, d)).max(doubled(a, b, d)).max(doubled(a, b, c));
-    (b - a).dot((c - a).cross(d - a)).abs() / largest
 }
