@@ -27,10 +27,10 @@ const MAX_RETRIES: u32 = 5;
 pub struct StepReport {
     /// Time at the end [s].
     pub time: f64,
-    /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it, or its full equations were not solved at once.
+    /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it, its full equations were not solved at once, or it gained energy.
     pub substeps: u32,
-    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, or full equations were not solved;
-    /// between two equilibria, shares of the load that were tried in vain, of the body that took most.
+    /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, full equations were not solved, or
+    /// backward Euler gained energy; between two equilibria, shares of the load that were tried in vain, of the body that took most.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,

@@ -47,7 +47,8 @@ impl<T: Scalar> World<T> {
         }
     }
 
-    /// Moves all bodies by equal parts of the step, those that gain energy too if it is told to; gives what the solvers did, and the first body whose step is not to be taken.
+    /// Moves all bodies by equal parts of the step, by those that gain energy too if it `takes_gain`; gives what the solvers did, and the
+    /// first body whose step is not to be taken.
     fn advance_implicitly(
         &mut self,
         span: &Span,
