@@ -7,6 +7,7 @@
 mod beads;
 mod variant;
 
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::time::Instant;
 
@@ -180,7 +181,7 @@ fn young_and_poisson() -> (f64, f64) {
 fn press_all(variant: &Variant, cells: usize) -> Result<Vec<Option<Pressed>>, ValidationError> {
     std::thread::scope(|scope| {
         let presses = STRAINS.map(|strain| scope.spawn(move || press(variant, cells, strain)));
-        presses.into_iter().map(|press| press.join().expect("a solve that fails says so")).collect()
+        presses.into_iter().map(|press| press.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
     })
 }
 
