@@ -148,6 +148,13 @@ pub struct Span {
     pub to: f64,
 }
 
+impl Span {
+    /// Time when a share of it, from 0 to 1, is over [s].
+    pub(crate) fn at(&self, share: f64) -> f64 {
+        self.from + (self.to - self.from) * share
+    }
+}
+
 /// A setting of an instrument that makes no sense.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InstrumentError {

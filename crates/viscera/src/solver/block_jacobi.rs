@@ -75,12 +75,6 @@ impl<T: Scalar> BlockJacobi<T> {
         Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz })
     }
 
-    /// P⁻¹ r of a node.
-    #[inline]
-    pub(crate) fn at(&self, node: usize, residual: Vec3<T>) -> Vec3<T> {
-        self.inverse(node) * residual
-    }
-
     /// P⁻¹ r of a block of nodes into `corrected`, and r·P⁻¹ r.
     #[inline(always)]
     fn apply_to_block(&self, block: usize, residual: &[Vec3<T>], corrected: &mut [Vec3<T>]) -> f64 {
@@ -139,8 +133,8 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
 
     fn squared_norm(&self, residual: &[Vec3<T>], executor: &Executor) -> f64 {
         let work = |block: usize, ReadBlocks(r): ReadBlocks<'_, Vec3<T>>| {
-            let square = |(i, &r): (usize, &Vec3<T>)| r.dot(self.at(block * NODE_BLOCK + i, r)).to_f64();
-            r.iter().enumerate().map(square).sum::<f64>()
+            let mut corrected = [Vec3::ZERO; NODE_BLOCK];
+            dispatch!(dispatch_level(), _simd => self.apply_to_block(block, r, &mut corrected[..r.len()]))
         };
         executor.fold(node_blocks(residual.len()), ReadBlocks(residual), &work, &|a, b| a + b).unwrap_or(0.0)
     }

@@ -1,4 +1,4 @@
-use super::step::MAX_SUBSTEPS;
+use super::step_explicit::MAX_SUBSTEPS;
 use super::{World, WorldError};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::{Implicit, Newton, Scheme};

@@ -9,6 +9,7 @@ mod observables;
 mod snapshot;
 mod statics;
 mod step;
+mod step_explicit;
 mod step_implicit;
 mod step_quasi_static;
 mod step_static;

@@ -61,9 +61,9 @@ impl<T: Scalar> World<T> {
         self.begin_attachments();
         let share = |part: u32| f64::from(part) / f64::from(parts);
         for part in 0..parts {
-            let at = |part: u32| span.from + (span.to - span.from) * share(part);
             stages.run(Stage::Instruments, || self.move_tools(span, share(part), share(part + 1)));
-            let (from, end) = (at(part), if part + 1 == parts { span.to } else { at(part + 1) });
+            let (from, end) =
+                (span.at(share(part)), if part + 1 == parts { span.to } else { span.at(share(part + 1)) });
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let dt = self.config.step / f64::from(parts);
             let interval = Interval { from, dt, drive: &drive };

@@ -360,7 +360,7 @@ fn place<T: Scalar>(
     }
     let trocar = start.trocar;
     if start.hand.is_none() && start.pose == scripted_pose(instrument, span.from, trocar) {
-        return (scripted_pose(instrument, span.from + (span.to - span.from) * share, trocar), trigger);
+        return (scripted_pose(instrument, span.at(share), trocar), trigger);
     }
     let pose = start.pose.towards(&goal.pose, share);
     let turns = trocar.is_some() && start.pose.through(trocar) != start.pose;

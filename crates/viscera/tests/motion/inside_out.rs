@@ -85,17 +85,20 @@ fn tissue_that_sees_reflections_comes_back_from_its_mirror_image() {
 }
 
 /// Stable neo-Hookean tissue let go at a thousand times its length is faster by far on the way back than at both ends:
-/// sub-steps follow, and the rest shape comes back.
+/// sub-steps follow, and the rest shape comes back, from whichever of some starts that rounding could make of one.
 #[test]
 fn tissue_let_go_at_a_thousand_times_its_length_comes_back() {
-    let law = StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap();
-    let mesh = TetMesh::box_grid([1, 1, 2], [0.1; 3]);
-    let body = Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue(law))).damping(50.0);
-    let mut world = world::<f64>([0.0; 3], 2e-2);
-    let id = world.add(body).unwrap();
-    world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
-    for _ in 0..60 {
-        world.step().unwrap();
+    for start in 0..3 {
+        let law = StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap();
+        let mesh = TetMesh::box_grid([1, 1, 2], [0.1; 3]);
+        let body = Body::new(mesh, DENSITY).model(TotalLagrangian::new(tissue(law))).damping(50.0);
+        let mut world = world::<f64>([0.0; 3], 2e-2);
+        let id = world.add(body).unwrap();
+        let stretch = 1000.0 * (1.0 + 1e-9 * f64::from(start));
+        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, stretch * x.z));
+        for _ in 0..60 {
+            world.step().unwrap();
+        }
+        assert_is_in_rest_shape(&world, id);
     }
-    assert_is_in_rest_shape(&world, id);
 }

@@ -100,7 +100,7 @@ fn an_empty_world_only_lets_time_pass() {
     }
 }
 
-/// Sub-steps so short that a step would take more than a hundred thousand are refused when the world is made, not in a
+/// Sub-steps so short that a step would take more than a million are refused when the world is made, not in a
 /// step that blames the tissue for them.
 #[test]
 fn a_sub_step_that_divides_a_step_too_finely_is_refused() {

@@ -1,7 +1,7 @@
 //! Fans: tetrahedra around a common edge, each sharing a face with the next.
 //!
-//! n tetrahedra one by one touch 4n corners. In a fan they touch the two ends of the edge and a ring of n + 1 nodes, so that
-//! a loop along the fan reads and writes n + 3: six tetrahedra of a cube around its diagonal, 9 in place of 24.
+//! n tetrahedra one by one touch 4n corners. In a fan they touch the two ends of the edge and a ring of n + 1 nodes, or of n if
+//! it closes: six tetrahedra of a cube around its diagonal, 8 in place of 24.
 
 /// The longest fan: longer ones save little and leave more lanes idle.
 const LONGEST: usize = 8;
@@ -12,6 +12,13 @@ pub(super) struct Fan {
     pub(super) axis: [u32; 2],
     pub(super) ring: Vec<u32>,
     pub(super) cells: Vec<u32>,
+}
+
+impl Fan {
+    /// Whether it goes all the way around its axis, so that its ring ends where it began.
+    pub(super) fn is_closed(&self) -> bool {
+        self.ring.first() == self.ring.last()
+    }
 }
 
 /// A cell at one of its edges: (axis 0, axis 1, from, to) is an even permutation of its corners.

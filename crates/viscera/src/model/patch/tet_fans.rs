@@ -19,7 +19,8 @@ pub(crate) struct TetFans {
     /// Where the batches of each patch begin, and the end.
     batch_starts: Vec<usize>,
     batches: Vec<Batch>,
-    /// Nodes of the batches by their numbers within the patch: axis, then ring, each for all lanes.
+    /// Nodes of the batches by their numbers within the patch: axis, then ring, each for all lanes; of fans that close, the ring
+    /// once around.
     nodes: Vec<u32>,
     /// Where the slots of each patch begin, and the end.
     slot_starts: Vec<usize>,
@@ -39,6 +40,20 @@ struct Batch {
     slot: usize,
     /// How many slots it has.
     length: usize,
+    /// Whether all its fans go all the way around.
+    is_closed: bool,
+}
+
+impl Batch {
+    /// How many nodes each ring has.
+    fn ring(&self) -> usize {
+        self.length + usize::from(!self.is_closed)
+    }
+
+    /// The places among its nodes of the corners of a slot.
+    fn corners(&self, slot: usize) -> [usize; 4] {
+        [0, 1, 2 + slot, 2 + (slot + 1) % self.ring()]
+    }
 }
 
 /// A tetrahedron of a loop.
@@ -84,12 +99,14 @@ impl TetFans {
 
     fn add_batch(&mut self, fans: &[Fan], part: &[u32]) {
         let length = fans.iter().map(|fan| fan.cells.len()).max().unwrap_or(0);
-        self.batches.push(Batch { nodes: self.nodes.len(), slot: self.slots(), length });
+        let is_closed = fans.iter().all(|fan| fan.cells.len() == length && fan.is_closed());
+        let batch = Batch { nodes: self.nodes.len(), slot: self.slots(), length, is_closed };
+        self.batches.push(batch);
         let fan = |lane: usize| fans.get(lane).unwrap_or(&fans[0]);
         for end in 0..2 {
             self.nodes.extend((0..self.lanes).map(|lane| fan(lane).axis[end]));
         }
-        for place in 0..=length {
+        for place in 0..batch.ring() {
             self.nodes.extend((0..self.lanes).map(|lane| ring_node(fan(lane), place)));
         }
         for slot in 0..length {
@@ -141,7 +158,7 @@ impl TetFans {
                 let (slot, lane) = (number / self.lanes, number % self.lanes);
                 let row = batch.slot * self.lanes + number;
                 let cell = self.cells[row];
-                let corners = [0, 1, 2 + slot, 3 + slot].map(|place| node(place, lane));
+                let corners = batch.corners(slot).map(|place| node(place, lane));
                 Tetrahedron { row, cell: cell as usize, corners, is_padding: self.row(cell) != row }
             })
         })
@@ -205,7 +222,7 @@ impl TetFans {
         sums: &mut PatchRows<T>,
     ) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
-        let mut scatter = Scatter { simd, element, sums, end: zero, ring: zero, carried: zero };
+        let mut scatter = Scatter { simd, element, sums, end: zero, ring: zero, carried: zero, kept: zero };
         self.walk(simd, patch, fields, &mut scatter);
     }
 
@@ -243,7 +260,7 @@ impl TetFans {
         sums: &mut [PatchRows<T>; 2],
     ) {
         let zero = Sym3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
-        let mut scatter = ScatterBlocks { simd, element, sums, origin: zero, end: zero, carried: zero };
+        let mut scatter = ScatterBlocks { simd, element, sums, origin: zero, end: zero, carried: zero, kept: zero };
         self.walk(simd, patch, fields, &mut scatter);
     }
 
@@ -304,30 +321,33 @@ impl TetFans {
         visitor: &mut impl Visitor<T, S, FIELDS>,
     ) {
         for batch in &self.batches[self.batch_starts[patch]..self.batch_starts[patch + 1]] {
-            let mut nodes = self.nodes[batch.nodes..batch.nodes + (batch.length + 3) * T::LANES].chunks_exact(T::LANES);
-            let (Some(origin), Some(end), Some(mut from), Some(mut to)) =
+            let places = batch.nodes..batch.nodes + (2 + batch.ring()) * T::LANES;
+            let mut nodes = self.nodes[places].chunks_exact(T::LANES);
+            let (Some(origin), Some(end), Some(start), Some(second)) =
                 (nodes.next(), nodes.next(), nodes.next(), nodes.next())
             else {
                 continue;
             };
             let at_origin = gather(simd, fields, origin);
             let axis = minus(gather(simd, fields, end), &at_origin);
-            let mut first = minus(gather(simd, fields, from), &at_origin);
-            let mut second = minus(gather(simd, fields, to), &at_origin);
+            let at_start = minus(gather(simd, fields, start), &at_origin);
+            let (mut from, mut to) = (start, second);
+            let (mut at_from, mut at_to) = (at_start, minus(gather(simd, fields, to), &at_origin));
             visitor.begin();
-            let mut slot = batch.slot;
-            loop {
-                let next = nodes.next();
-                let third = minus(gather(simd, fields, next.unwrap_or(to)), &at_origin);
-                let mut edges = [Mat3::from_columns(axis[0], first[0], second[0]); FIELDS];
+            for slot in batch.slot..batch.slot + batch.length {
+                let (next, at_next) = match nodes.next() {
+                    Some(next) => (next, minus(gather(simd, fields, next), &at_origin)),
+                    // Where a ring closes; or the end, and not looked at.
+                    None => (start, at_start),
+                };
+                let mut edges = [Mat3::from_columns(axis[0], at_from[0], at_to[0]); FIELDS];
                 for field in 1..FIELDS {
-                    edges[field] = Mat3::from_columns(axis[field], first[field], second[field]);
+                    edges[field] = Mat3::from_columns(axis[field], at_from[field], at_to[field]);
                 }
-                visitor.tetrahedron(simd, slot, &edges, from);
-                slot += 1;
-                from = to;
-                let Some(next) = next else { break };
-                (to, first, second) = (next, second, third);
+                let is_kept = batch.is_closed && slot == batch.slot;
+                visitor.tetrahedron(simd, slot, &edges, (!is_kept).then_some(from));
+                (from, at_from) = (to, at_to);
+                (to, at_to) = (next, at_next);
             }
             visitor.end(origin, end, from);
         }
@@ -365,15 +385,20 @@ pub(crate) trait Measure<T: Scalar>: Sync {
 }
 
 /// Sorts fans so that the lanes of a batch are far from each other: neighbours share nodes, and a force that is added to a
-/// node has to wait for the one before.
+/// node has to wait for the one before. Those that close stand together.
 fn lanes_apart(fans: Vec<Fan>, lanes: usize) -> Vec<Fan> {
     let mut sorted = Vec::with_capacity(fans.len());
     for same in fans.chunk_by(|a, b| a.cells.len() == b.cells.len()) {
-        let batches = same.len() / lanes;
-        for batch in 0..batches {
-            sorted.extend((0..lanes).map(|lane| same[lane * batches + batch].clone()));
+        let (closed, open): (Vec<_>, Vec<_>) = same.iter().cloned().partition(Fan::is_closed);
+        let whole = closed.len() / lanes * lanes;
+        let rest = [&closed[whole..], &open].concat();
+        for fans in [&closed[..whole], &rest] {
+            let batches = fans.len() / lanes;
+            for batch in 0..batches {
+                sorted.extend((0..lanes).map(|lane| fans[lane * batches + batch].clone()));
+            }
+            sorted.extend_from_slice(&fans[batches * lanes..]);
         }
-        sorted.extend_from_slice(&same[batches * lanes..]);
     }
     sorted
 }

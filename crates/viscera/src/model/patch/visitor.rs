@@ -11,9 +11,9 @@ pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
     /// A batch of fans begins.
     #[inline(always)]
     fn begin(&mut self) {}
-    /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring.
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]);
-    /// The batch has ended: nodes of its axis, and the last of the ring.
+    /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring, none at the node where the ring will close.
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: Option<&[u32]>);
+    /// The batch has ended: nodes of its axis, and those where the ring ends or has closed.
     #[inline(always)]
     fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
 }
@@ -29,28 +29,33 @@ pub(super) struct Scatter<'a, T: Scalar, S: Simd, E> {
     pub(super) ring: Vec3<T::Lanes<S>>,
     /// What the last tetrahedron exerts on the node of the ring that it shares with the next.
     pub(super) carried: Vec3<T::Lanes<S>>,
+    /// The force on the node where the ring will close.
+    pub(super) kept: Vec3<T::Lanes<S>>,
 }
 
 impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, E> {
     #[inline(always)]
     fn begin(&mut self) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.end, self.ring, self.carried) = (zero, zero, zero);
+        (self.end, self.ring, self.carried, self.kept) = (zero, zero, zero, zero);
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: &[u32]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: Option<&[u32]>) {
         let [end, ring, next] = self.element.forces(simd, slot, edges).columns;
         let ring = self.carried + ring;
         self.end += end;
         self.ring += ring;
         self.carried = next;
-        add(ring, from, self.sums);
+        match from {
+            Some(from) => add(ring, from, self.sums),
+            None => self.kept = ring,
+        }
     }
 
     #[inline(always)]
     fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add(self.carried, last, self.sums);
+        add(self.kept + self.carried, last, self.sums);
         add(self.end, end, self.sums);
         add(-(self.ring + self.carried + self.end), origin, self.sums);
     }
@@ -64,27 +69,31 @@ pub(super) struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
     pub(super) origin: Sym3<T::Lanes<S>>,
     pub(super) end: Sym3<T::Lanes<S>>,
     pub(super) carried: Sym3<T::Lanes<S>>,
+    pub(super) kept: Sym3<T::Lanes<S>>,
 }
 
 impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, S, E> {
     #[inline(always)]
     fn begin(&mut self) {
         let zero = Sym3::diagonal(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.origin, self.end, self.carried) = (zero, zero, zero);
+        (self.origin, self.end, self.carried, self.kept) = (zero, zero, zero, zero);
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: &[u32]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: Option<&[u32]>) {
         let [origin, end, ring, next] = self.element.blocks(simd, slot, &edges[0]);
         self.origin = self.origin + origin;
         self.end = self.end + end;
-        add_block(self.carried + ring, from, self.sums);
+        match from {
+            Some(from) => add_block(self.carried + ring, from, self.sums),
+            None => self.kept = ring,
+        }
         self.carried = next;
     }
 
     #[inline(always)]
     fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add_block(self.carried, last, self.sums);
+        add_block(self.kept + self.carried, last, self.sums);
         add_block(self.end, end, self.sums);
         add_block(self.origin, origin, self.sums);
     }
@@ -106,7 +115,7 @@ pub(super) struct Keep<'a, T, R> {
 
 impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
         let start = (slot - self.first) * self.block;
         self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
     }
@@ -120,7 +129,7 @@ pub(super) struct Largest<'a, M, V> {
 
 impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: &[u32]) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
         self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
     }
 }
