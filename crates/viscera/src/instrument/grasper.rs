@@ -17,8 +17,7 @@ pub struct Grasper {
     pub path: Path,
     /// How they are led along the path.
     pub mount: Mount,
-    /// How near the tip has to come to where a hand leads it before its pull closes the jaws [m, > 0]; 10 mm by default. Without jaws, the tip
-    /// holds the nodes that are this near to it.
+    /// Without jaws, the tip holds the nodes that are this near to it [m, > 0]; 10 mm by default.
     pub radius: f64,
     /// When they close [s]; never by default: for a hand that pulls the trigger.
     pub close: f64,

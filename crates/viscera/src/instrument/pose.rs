@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::{InstrumentError, Path};
+use super::{InstrumentError, Path, ToolState};
 use crate::curve::Curve;
 use crate::math::{Mat3, Vec3};
 use crate::mesh::Point;
@@ -27,7 +27,7 @@ pub struct ToolInput {
     /// From 0 (jaws open, current off) to 1 (jaws closed, full current).
     pub trigger: f64,
     /// How fast its tip goes there at most [m/s, > 0]; without bound it is there at the end of the next step, however far that is. Where
-    /// there is a bound, the trigger is pulled only within reach of the pose.
+    /// there is a bound, the trigger is pulled only when the tip has come there.
     pub speed: f64,
 }
 
@@ -43,11 +43,11 @@ impl ToolInput {
         if way > most { from.towards(&self.pose, most / way) } else { self.pose }
     }
 
-    /// The trigger of a tool that is at `from` with `trigger`, and takes hold within `reach` [m]. It opens at once. It closes where the hand
-    /// has it: a hand's way and its pull come together where a simulation is late, and jaws that closed on the way held nothing.
-    pub(crate) fn pulled(&self, from: &ToolPose, trigger: f64, reach: f64) -> f64 {
-        let on_its_way = self.speed.is_finite() && (self.pose.tip - from.tip).norm() > reach;
-        if on_its_way { self.trigger.min(trigger) } else { self.trigger }
+    /// The trigger of a tool in its next step. It opens at once. It closes where the hand has it: a hand's way and its pull come together
+    /// where a simulation is late, and jaws that closed before they came held nothing.
+    pub(crate) fn pulled(&self, tool: &ToolState) -> f64 {
+        let on_its_way = self.speed.is_finite() && self.pose.tip != tool.pose.tip && !tool.is_awaited;
+        if on_its_way { self.trigger.min(tool.trigger) } else { self.trigger }
     }
 }
 

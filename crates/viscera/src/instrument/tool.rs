@@ -16,6 +16,9 @@ pub struct ToolState {
     pub hand: Option<ToolInput>,
     /// Whether it has taken a step: before that it is just being put into place.
     pub has_moved: bool,
+    /// Whether it has come to where a hand has it that pulls its trigger already: it follows the pull in the next step, wherever the hand
+    /// has gone since.
+    pub is_awaited: bool,
     /// Whether its jaws are closed or its current is on.
     pub is_closed: bool,
     /// Nodes that it holds.
@@ -41,6 +44,7 @@ impl ToolState {
             trigger: 0.0,
             hand: None,
             has_moved: false,
+            is_awaited: false,
             is_closed: false,
             held_nodes: 0,
             contact_force: Vec3::ZERO,

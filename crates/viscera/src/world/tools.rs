@@ -220,7 +220,7 @@ impl<T: Scalar> World<T> {
             let goal = match tool.hand {
                 Some(hand) => {
                     let pose = hand.reached(&tool.pose, span.to - span.from);
-                    let trigger = hand.pulled(&tool.pose, tool.trigger, instrument.reach());
+                    let trigger = hand.pulled(&tool);
                     ToolInput { pose: pose.through(tool.trocar), trigger, ..hand }
                 }
                 None => ToolInput::new(
@@ -300,6 +300,8 @@ impl<T: Scalar> World<T> {
         let per_second = 1.0 / (span.to - span.from);
         for (number, (tool, goal)) in self.tools.iter_mut().zip(&self.motion.goals).enumerate() {
             (tool.pose, tool.trigger, tool.has_moved) = (goal.pose, goal.trigger, true);
+            tool.is_awaited =
+                tool.hand.is_some_and(|hand| hand.pose.tip == goal.pose.tip && hand.trigger > goal.trigger);
             let loads = || self.bodies.iter().map(|body| &body.contacts.loads[number]);
             let mean = |of: fn(&crate::contact::ToolLoad) -> Vec3<f64>| {
                 loads().fold(Vec3::ZERO, |sum, load| sum + of(load)) * per_second

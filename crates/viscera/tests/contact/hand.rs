@@ -2,7 +2,7 @@
 
 use viscera::body::{Body, NodeMotion};
 use viscera::curve::Curve;
-use viscera::instrument::{Cautery, Grasper, InstrumentKind, Mount, Probe, ToolInput, ToolPose};
+use viscera::instrument::{Cautery, Grasper, InstrumentKind, Jaws, Mount, Probe, ToolInput, ToolPose};
 use viscera::material::{StVenantKirchhoff, Tissue};
 use viscera::mesh::{HexMesh, Region};
 use viscera::model::TotalLagrangian;
@@ -77,13 +77,34 @@ fn jaws_close_where_the_hand_has_them() {
         steps += 1;
         assert!(steps < 8, "never closed");
     }
-    assert_eq!(steps, 5, "80 mm at 20 mm a step, the last of them within reach");
+    assert_eq!(steps, 5, "80 mm at 20 mm a step, and then the pull");
     let held = |node: usize| matches!(world.body(body).state().motions[node], NodeMotion::Held(_));
     let nodes = world.body(body).mesh().nodes();
     assert!((0..nodes.len()).filter(|&node| held(node)).all(|node| nodes[node].x > 0.15));
     world.set_tool(id, led(above_the_middle, 0.0)).unwrap();
     world.step().unwrap();
     assert_eq!(world.tool(id).held_nodes, 0);
+}
+
+/// Also where the rest of the way is shorter than the jaws reach, and where the hand is elsewhere by then: jaws that closed before they came
+/// held nothing.
+#[test]
+fn jaws_close_where_they_came_to_from_nearby() {
+    let (mut world, body) = bar();
+    let id = world.add_instrument(Grasper { jaws: Some(Jaws::default()), radius: 0.03, ..Grasper::default() }).unwrap();
+    let led = |height: f64, trigger: f64| ToolInput { speed: 4.0, ..input(Vector::new(0.16, height, 0.02), trigger) };
+    world.set_tool(id, led(0.05, 0.0)).unwrap();
+    world.step().unwrap();
+    world.set_tool(id, led(0.033, 1.0)).unwrap();
+    world.step().unwrap();
+    assert_eq!(world.tool(id).held_nodes, 0, "on its way");
+    world.set_tool(id, led(0.045, 1.0)).unwrap();
+    world.step().unwrap();
+    assert!(world.tool(id).held_nodes > 0);
+    let held = |node: usize| matches!(world.body(body).state().motions[node], NodeMotion::Held(_));
+    let before: Vec<f64> = world.body(body).positions().iter().map(|x| x.y).collect();
+    let highest = (0..before.len()).filter(|&node| held(node)).map(|node| before[node]).fold(0.0, f64::max);
+    assert!(highest > 0.045, "carried along: {highest} m");
 }
 
 /// The trigger closes the jaws at one half, and opens them below.

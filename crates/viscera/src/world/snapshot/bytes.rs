@@ -20,7 +20,7 @@ use crate::world::World;
 
 const MARK: &[u8; 8] = b"viscera\0";
 /// Grows with every change of what is written.
-const FORMAT: u16 = 4;
+const FORMAT: u16 = 5;
 const HEAD: usize = MARK.len() + 3;
 const CHECKSUM: usize = 4;
 
