@@ -18,7 +18,7 @@ impl<T: Scalar> BlockMatrix<T> {
     pub fn new<'a>(mesh: &VolumeMesh, reach: impl Into<Reach<'a>>) -> Self {
         let mut starts = vec![0];
         let mut columns = Vec::new();
-        for row in &pattern(mesh, reach.into()) {
+        for row in &pattern(mesh, reach.into(), &vec![false; mesh.cell_count()]) {
             columns.extend_from_slice(row);
             starts.push(columns.len() as u32);
         }
@@ -93,9 +93,9 @@ impl From<usize> for Reach<'_> {
     }
 }
 
-/// The nodes that each node knows, itself included, ascending.
-pub(super) fn pattern(mesh: &VolumeMesh, reach: Reach<'_>) -> Vec<Vec<u32>> {
-    let ring = neighbours(mesh);
+/// The nodes that each node knows, itself included, ascending, when cells are `removed`.
+pub(super) fn pattern(mesh: &VolumeMesh, reach: Reach<'_>, removed: &[bool]) -> Vec<Vec<u32>> {
+    let ring = neighbours(mesh, removed);
     let mut pattern = ring.clone();
     for _ in 1..reach.rings {
         let beyond = |near: &Vec<u32>| near.iter().flat_map(|&node| ring[node as usize].iter().copied()).collect();
@@ -112,9 +112,9 @@ pub(super) fn pattern(mesh: &VolumeMesh, reach: Reach<'_>) -> Vec<Vec<u32>> {
 }
 
 /// The nodes that share a cell with each node, itself included, ascending.
-fn neighbours(mesh: &VolumeMesh) -> Vec<Vec<u32>> {
+fn neighbours(mesh: &VolumeMesh, removed: &[bool]) -> Vec<Vec<u32>> {
     let mut neighbours: Vec<Vec<u32>> = (0..mesh.nodes().len() as u32).map(|node| vec![node]).collect();
-    for cell in 0..mesh.cell_count() {
+    for cell in (0..mesh.cell_count()).filter(|&cell| !removed[cell]) {
         let corners = mesh.cell(cell);
         for &corner in corners {
             neighbours[corner as usize].extend_from_slice(corners);

@@ -97,6 +97,34 @@ fn cut_bodies_move_as_with_block_jacobi() {
     assert_same(|| fine_bar(NodallyIntegrated::new(tissue())), linearised(), &cut, "at the nodes");
 }
 
+/// Cut half through, or slit along most of its length, a bar that comes to rest takes half as many iterations again as the whole one, no
+/// more: lattices that reached across the cut took it twice as many, and the more the finer the mesh. What was cut off before comes back
+/// with a snapshot, and then it is the bar of before.
+#[test]
+fn a_cut_takes_few_iterations_more() {
+    let mesh = fine_mesh();
+    let cells = |is_cut: fn(Vector) -> bool| -> Vec<u32> {
+        let centre = |cell: &[u32; 4]| {
+            cell.iter().map(|&node| mesh.nodes[node as usize] * 0.25).fold(Vector::ZERO, |a, b| a + b)
+        };
+        (0..mesh.cells.len() as u32).filter(|&cell| is_cut(centre(&mesh.cells[cell as usize]))).collect()
+    };
+    let settings = Implicit { linear: Stop::Tolerance { relative: 1e-6, at_most: 3000 }, ..Implicit::default() };
+    let body = fine_bar(Corotational::new(linear_tissue()));
+    let (mut world, id) = world::<f64>([0.0, -0.1, 0.0], 1.0, Integrator::Implicit(multigrid(settings)), body);
+    let whole = world.snapshot();
+    let mut iterations = |cut: &[u32]| {
+        world.restore(&whole).unwrap();
+        world.remove_cells(id, cut).unwrap();
+        world.step().unwrap().implicit.unwrap().linear_iterations
+    };
+    let without = iterations(&[]);
+    let half = iterations(&cells(|p| p.z > 0.15 && p.z < 0.167 && p.y > 0.05));
+    let slit = iterations(&cells(|p| p.x > 0.05 && p.x < 0.067 && p.z > 0.07));
+    assert!(2 * half <= 3 * without && 2 * slit <= 3 * without, "{without}, cut half through {half}, slit {slit}");
+    assert_eq!(iterations(&[]), without);
+}
+
 /// The lattices lie along the axes and are numbered by the nodes: a turned and renumbered bar moves alike all the same.
 #[test]
 fn turned_and_renumbered_bodies_move_alike() {

@@ -67,6 +67,9 @@ impl<T: Scalar> Step<'_, T> {
                     multigrid: memory.multigrid.as_mut(),
                     matrix: matrix.assembled.as_mut(),
                 };
+                if let Some(multigrid) = &mut sink.multigrid {
+                    multigrid.follow(&self.body.mesh, state.reach(), &state.removed);
+                }
                 sink.clear();
                 for model in &state.models {
                     model.add_blocks(&state.positions, &mut self.body.scratch, &mut sink);

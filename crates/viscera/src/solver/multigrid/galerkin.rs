@@ -132,7 +132,8 @@ fn filtered<T: Scalar>(block: Mat3<T>, row: &Filter<T>, column: &Filter<T>) -> M
 }
 
 impl<T: Scalar> BlockSink<T> for FineBlocks<T> {
-    /// Of two blocks that mirror each other it keeps one. Panics for two nodes outside the pattern.
+    /// Of two blocks that mirror each other it keeps one, and none that is zero: those of removed cells. Panics for two nodes outside the
+    /// pattern.
     fn add(&mut self, row: u32, column: u32, block: Mat3<T>) {
         if column < row {
             return;
@@ -140,7 +141,10 @@ impl<T: Scalar> BlockSink<T> for FineBlocks<T> {
         let span = self.span(row as usize);
         // Seven columns on average: faster from one to the next than by halving.
         let offset = self.columns[span.clone()].iter().position(|&other| other == column);
-        assert!(offset.is_some(), "nodes {row} and {column} are too far apart: the block is of another mesh or model");
+        assert!(
+            offset.is_some() || block == Mat3::ZERO,
+            "nodes {row} and {column} are too far apart: the block is of another mesh or model"
+        );
         offset.into_iter().for_each(|offset| self.blocks[span.start + offset] += block);
     }
 }

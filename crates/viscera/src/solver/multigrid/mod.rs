@@ -5,7 +5,7 @@
 //! in the same way, and on those below it twice, interpolates and smooths again. Coarse matrices are Wᵀ A W, from the cells that are there and as they
 //! are deformed; products on the mesh stay free of a matrix. The lattices are laid over the rest shape, where moving and
 //! straining a body as a whole are among their functions; turning it is too, for as long as it is not bent within a cell
-//! of the lattice.
+//! of the lattice. Where cells were removed they are laid anew: as far as tissue does not reach across a cut, nor does a lattice.
 //!
 //! With E = I − p(D⁻¹A) D⁻¹A, the error that smoothing leaves, and a coarse correction C = W B W ᵀ, the cycle is
 //! (I − E²) A⁻¹ + E C Eᵀ; no error grows under E, and B is not negative, so that it is symmetric and positive definite for every
@@ -36,7 +36,7 @@ const DIRECT: usize = 100;
 /// Degree of the polynomials. One takes as long with half as many iterations again, three takes longer.
 const DEGREE: u32 = 2;
 
-/// Lattices over a body, and what a cycle knows about a matrix beside the blocks on its diagonal.
+/// Lattices over a body as it is cut, and what a cycle knows about a matrix beside the blocks on its diagonal.
 #[derive(Clone, Debug)]
 pub struct Multigrid<T> {
     interpolation: Interpolation<T>,
@@ -46,16 +46,30 @@ pub struct Multigrid<T> {
     /// Memory for one more nodal array.
     nodal: Vec<Vec3<T>>,
     levels: Vec<Level<T>>,
+    /// The cells that were removed when the lattices were laid.
+    removed: Vec<bool>,
 }
 
 impl<T: Scalar> Multigrid<T> {
-    /// Memory for a body of `mesh`, of models whose forces reach so far. Nothing is allocated later.
+    /// Memory for a body of `mesh`, of models whose forces reach so far. Nothing is allocated later, but by [`Multigrid::follow`].
     pub fn new<'a>(mesh: &VolumeMesh, reach: impl Into<Reach<'a>>) -> Self {
-        let (mut lattice, interpolation) = Lattice::over(mesh);
-        let (blocks, mut matrix) = FineBlocks::new(&pattern(mesh, reach.into()), &interpolation, lattice.len());
+        Self::over(mesh, reach.into(), &vec![false; mesh.cell_count()])
+    }
+
+    /// Lays the lattices anew if other cells are `removed` than when that was done last.
+    pub fn follow<'a>(&mut self, mesh: &VolumeMesh, reach: impl Into<Reach<'a>>, removed: &[bool]) {
+        if self.removed != removed {
+            *self = Self::over(mesh, reach.into(), removed);
+        }
+    }
+
+    fn over(mesh: &VolumeMesh, reach: Reach<'_>, removed: &[bool]) -> Self {
+        let neighbours = pattern(mesh, reach, removed);
+        let (mut lattice, interpolation) = Lattice::over(mesh, &neighbours);
+        let (blocks, mut matrix) = FineBlocks::new(&neighbours, &interpolation, lattice.len());
         let mut levels = Vec::new();
         while lattice.len() > DIRECT {
-            let (coarse, parents) = lattice.coarser();
+            let (coarse, parents) = lattice.coarser(&matrix);
             let (coarsening, next) = Coarsening::new(&matrix, parents, coarse.len());
             levels.push(Level::smoothed(matrix, coarsening, DEGREE));
             (lattice, matrix) = (coarse, next);
@@ -63,7 +77,8 @@ impl<T: Scalar> Multigrid<T> {
         levels.push(Level::direct(matrix));
         let nodes = mesh.nodes().len();
         let (smoother, vectors) = (Chebyshev::new(DEGREE), Vectors::new(nodes));
-        Self { interpolation, blocks, smoother, vectors, nodal: vec![Vec3::ZERO; nodes], levels }
+        let (nodal, removed) = (vec![Vec3::ZERO; nodes], removed.to_vec());
+        Self { interpolation, blocks, smoother, vectors, nodal, levels, removed }
     }
 
     /// Clears the blocks of the stiffness K before new ones are added.
