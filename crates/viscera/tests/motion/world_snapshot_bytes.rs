@@ -172,7 +172,7 @@ fn bytes_with_a_checksum_that_fits_are_not_believed_either() {
     let content = &bytes[..bytes.len() - 4];
     let mut newer = content.to_vec();
     newer[8] = 9;
-    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 4 });
+    assert_eq!(refusal(world.read_snapshot(&signed(newer))), SnapshotError::OtherVersion { found: 9, known: 5 });
     for length in 11..content.len() {
         refusal(world.read_snapshot(&signed(content[..length].to_vec())));
     }
