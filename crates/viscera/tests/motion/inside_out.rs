@@ -94,28 +94,27 @@ fn stretched(stretch: f64) -> (World<f64>, BodyId) {
     (world, id)
 }
 
-/// Such tissue is faster by far on the way back than at both ends: sub-steps follow, and the rest shape comes back.
 #[test]
-fn tissue_let_go_at_a_hundred_times_its_length_comes_back() {
-    let (mut world, id) = stretched(100.0);
-    let first = world.step().unwrap();
-    assert!(first.retries > 0, "planned on the way: {first:?}");
+fn tissue_let_go_at_thirty_times_its_length_comes_back() {
+    let (mut world, id) = stretched(30.0);
     for _ in 0..60 {
         world.step().unwrap();
     }
     assert_is_in_rest_shape(&world, id);
 }
 
-/// From ten times as far its way is one of many that rounding chooses from, and some end in another shape; but every step is made, and
-/// it comes to rest.
+/// From farther the tissue is faster by far on the way than at both ends, and its way is one of many that rounding chooses from: some end
+/// folded, with no cell inside out. But sub-steps follow, every step is made, and it comes to rest.
 #[test]
 fn tissue_let_go_at_a_thousand_times_its_length_comes_to_rest() {
-    for start in 0..3 {
-        let (mut world, id) = stretched(1000.0 * (1.0 + 1e-9 * f64::from(start)));
+    for stretch in [100.0, 300.0, 1000.0, 1000.0 + 1e-6, 1000.0 + 2e-6] {
+        let (mut world, id) = stretched(stretch);
+        let first = world.step().unwrap();
+        assert!(first.retries > 0, "planned on the way: {first:?}");
         for _ in 0..60 {
             world.step().unwrap();
         }
         let fastest = world.body(id).velocities().iter().map(|v| v.norm()).fold(0.0, f64::max);
-        assert!(fastest < 1e-3, "start {start}: {fastest} m/s");
+        assert!(fastest < 1e-6, "{stretch}: {fastest} m/s");
     }
 }
