@@ -226,7 +226,7 @@ impl PyWorld {
             false => AnyWorld::Double(World::new(config).or_raise()?),
         };
         if let Some(solver) = solver {
-            in_world!(&mut world, world => world.set_static_solver(solver));
+            in_world!(&mut world, world => world.set_static_solver(solver)).or_raise()?;
         }
         Ok(Self::from_world(world, Executor::threads(threads).or_raise()?, Vec::new()))
     }

@@ -167,20 +167,12 @@ impl Torture {
     }
 
     fn over_ranges(&self, report: Report) -> Report {
-        let mut table = Table::new(
-            "ranges",
-            &[
-                "integrator",
-                "settings",
-                "all steps made",
-                "diverged",
-                "too stiff",
-                "not converged",
-                "no numbers",
-                "panics",
-                "largest gain",
-            ],
-        );
+        let heads = [
+            &["integrator", "settings", "all steps made"][..],
+            &ranges::KINDS,
+            &["no numbers", "panics", "largest gain"],
+        ];
+        let mut table = Table::new("ranges", &heads.concat());
         for method in Method::all() {
             let of: Vec<_> =
                 self.ranges.iter().filter(|tally| tally.method == method && tally.refused.is_none()).collect();
@@ -188,17 +180,14 @@ impl Torture {
                 of.iter().map(|tally| number(tally)).sum::<u32>().to_string()
             };
             let conserving = of.iter().filter(|tally| tally.combination.has_energy());
-            table.push(vec![
-                method.name.into(),
-                sum(&|tally| tally.tried),
-                sum(&|tally| tally.made),
-                sum(&|tally| tally.undone[0]),
-                sum(&|tally| tally.undone[1]),
-                sum(&|tally| tally.undone[2]),
+            let mut row = vec![method.name.into(), sum(&|tally| tally.tried), sum(&|tally| tally.made)];
+            row.extend((0..ranges::KINDS.len()).map(|kind| sum(&|tally| tally.undone[kind])));
+            row.extend([
                 sum(&|tally| tally.not_numbers),
                 sum(&|tally| tally.panics),
                 brief(conserving.map(|tally| tally.gain).fold(0.0, f64::max)),
             ]);
+            table.push(row);
         }
         let [youngs, poissons, steps] = ranges::grids(self.size);
         let besides = ranges::besides(self.size).map_or(String::new(), |[young, poisson, step]| {

@@ -13,6 +13,9 @@ use crate::{Size, ValidationError};
 /// Steps made in each setting.
 pub(super) const STEPS: u32 = 4;
 
+/// What steps that are undone here say.
+pub(super) const KINDS: [&str; 4] = ["diverged", "too stiff", "not converged", "gained energy"];
+
 /// What a combination and an integrator did over the ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeTally {
@@ -26,8 +29,8 @@ pub struct RangeTally {
     pub refused: Option<&'static str>,
     /// Settings in which every step was made.
     pub made: u32,
-    /// Settings in which a step was undone, with an error that says what to do: diverged, too stiff, not converged.
-    pub undone: [u32; 3],
+    /// Settings in which a step was undone, with an error that says what to do, for each of [`KINDS`].
+    pub undone: [u32; KINDS.len()],
     /// Settings in which a number that is none came through.
     pub not_numbers: u32,
     /// Panics.
@@ -85,7 +88,7 @@ pub(super) fn attempt(combination: Combination, method: Method, size: Size) -> R
         tried: 0,
         refused: None,
         made: 0,
-        undone: [0; 3],
+        undone: [0; KINDS.len()],
         not_numbers: 0,
         panics: 0,
         gain: 0.0,
@@ -123,8 +126,8 @@ fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), Vali
     let rest = before[2];
     for _ in 0..STEPS {
         if let Err(error) = world.step() {
-            let kind = ["diverged", "too stiff", "not converged"].iter().position(|&name| name == undone(&error));
-            tally.undone[kind.unwrap_or(0)] += 1;
+            let kind = KINDS.iter().position(|&name| name == undone(&error)).ok_or(error)?;
+            tally.undone[kind] += 1;
             return Ok(());
         }
         let now = parts(&world.observe(id));

@@ -206,6 +206,7 @@ pub(super) fn undone(error: &StepError) -> &'static str {
         StepError::Diverged { .. } => "diverged",
         StepError::TooStiff { .. } => "too stiff",
         StepError::NotConverged { .. } => "not converged",
+        StepError::GainedEnergy { .. } => "gained energy",
         StepError::UnstableSubstep { .. } => "sub-step too long",
         StepError::VolumeNotKept { .. } => "volume not kept",
         StepError::NoEquilibrium { .. } => "no equilibrium",

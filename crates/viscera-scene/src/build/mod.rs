@@ -76,7 +76,7 @@ impl Scene {
         };
         let mut world = World::new(config).map_err(|error| root.error(error, ""))?;
         if let Some(solver) = integrator::static_solver(&file.integrator) {
-            world.set_static_solver(solver);
+            world.set_static_solver(solver).map_err(|error| root.key("integrator").error(error, ""))?;
         }
         let mut notices = Vec::new();
         let mut bodies = IndexMap::new();

@@ -7,6 +7,7 @@ mod ghost;
 mod play;
 mod surface;
 pub(crate) mod tools;
+mod way_out;
 mod world;
 
 pub(crate) use build::Change;

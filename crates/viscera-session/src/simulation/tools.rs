@@ -1,7 +1,6 @@
 //! The instruments of a world, as a page sees and leads them.
 
 use serde::{Deserialize, Serialize};
-use viscera::body::SurfaceTriangle;
 use viscera::curve::Curve;
 use viscera::instrument::{
     Capsule, Cautery, Grasper, Instrument, InstrumentKind, Jaws, Mount, Probe, Shaft, ToolInput, ToolPose,
@@ -9,6 +8,7 @@ use viscera::instrument::{
 use viscera::math::{Scalar, Vec3};
 use viscera::world::{BodyId, InstrumentId, World, WorldError};
 
+use super::way_out::TissueAtRest;
 use super::world::{AnyWorld, with};
 use crate::message::{F32s, InstrumentEntry, InstrumentFrame, InstrumentShape, Manner, Part, PartKind, Refusal};
 use crate::refuse;
@@ -26,10 +26,6 @@ const HASTE: f64 = 5e-4;
 /// 7.6e10 N when a slow simulation made one step of what a hand did in a second. Eight times what the page's hands do: at 1 m/s tools came
 /// after their hands where a simulation was only a little late, and jaws closed on the way.
 const SPEED: f64 = 10.0;
-
-/// How far from tissue an instrument is drawn back, and how near to its trocar [radii of the bodies].
-const CLEARANCE: f64 = 0.2;
-const NARROWEST: f64 = 0.12;
 
 /// What the jaws of a grasper hold at most [N]: about what the surgeon's hand pulls at an organ with.
 const GRIP: f64 = 10.0;
@@ -113,15 +109,14 @@ pub(crate) fn lead_as_before(
     before: &AnyWorld,
     tools: &[Tool],
 ) -> Result<(), Box<Refusal>> {
+    let rest = TissueAtRest::of(world);
     for (number, tool) in tools.iter().enumerate().filter(|(_, tool)| !tool.removed) {
         let number = number as u32;
         let state = with!(before, before => *before.tool(id(number)));
         set_trocar(world, number, state.trocar.map(Vec3::to_array)).map_err(refuse::because)?;
         let Some(hand) = state.hand else { continue };
-        let direction = state.pose.direction;
-        let out = way_out(world, radius, hand.pose.tip, direction, state.trocar);
         let hand = Hand {
-            tip: (hand.pose.tip - direction * out).to_array(),
+            tip: rest.drawn_out(hand.pose, state.trocar, radius).to_array(),
             direction: hand.pose.direction.to_array(),
             roll: hand.pose.roll,
             trigger: hand.trigger,
@@ -132,29 +127,6 @@ pub(crate) fn lead_as_before(
         lead(world, number, radius, &hand).map_err(refuse::because)?;
     }
     Ok(())
-}
-
-/// How far an instrument is drawn back along its shaft until nothing of that passes tissue at rest [m]; none comes nearer to its trocar
-/// than that. Tissue that begins anew around a tool is impaled: it hung on the tool, or no step could be made.
-fn way_out(world: &AnyWorld, radius: f64, tip: Vec3<f64>, direction: Vec3<f64>, trocar: Option<Vec3<f64>>) -> f64 {
-    let of_body = |body: usize| {
-        let rest = world.rest(body);
-        let corners = move |triangle: SurfaceTriangle| triangle.nodes.map(|node| rest[node as usize]);
-        world.surface(body).into_iter().filter_map(move |triangle| crossing(tip, -direction, corners(triangle)))
-    };
-    let shaft = shaft_length(radius);
-    let deepest = (0..world.body_count()).flat_map(of_body).filter(|&way| way < shaft).reduce(f64::max);
-    let most = trocar.map_or(f64::INFINITY, |trocar| (tip - trocar).norm() - NARROWEST * radius);
-    deepest.map_or(0.0, |way| (way + CLEARANCE * radius).min(most).max(0.0))
-}
-
-/// How far along a direction of length 1 a ray meets a triangle [m].
-fn crossing(from: Vec3<f64>, along: Vec3<f64>, [a, b, c]: [Vec3<f64>; 3]) -> Option<f64> {
-    let normal = (b - a).cross(c - a);
-    let way = normal.dot(a - from) / normal.dot(along);
-    let point = from + along * way;
-    let is_within = |from: Vec3<f64>, to: Vec3<f64>| (to - from).cross(point - from).dot(normal) >= 0.0;
-    (way >= 0.0 && way.is_finite() && is_within(a, b) && is_within(b, c) && is_within(c, a)).then_some(way)
 }
 
 /// Brings an instrument in where the hand is, sized for bodies within a ball of `radius` [m], its shaft through `trocar` [m]. It stays

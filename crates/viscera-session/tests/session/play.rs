@@ -1,4 +1,5 @@
-use viscera_session::message::{Command, RunState};
+use viscera::math::Vec3;
+use viscera_session::message::{Command, RunState, Trocar};
 
 use crate::support::{BAR, Page, light_bar};
 
@@ -229,6 +230,35 @@ fn a_new_beginning_draws_tools_out_of_the_tissue() {
     let mut untouched = Page::open(BAR);
     untouched.step(30);
     assert_eq!(page.positions(0), untouched.positions(0));
+}
+
+/// A tool that was on its way through a trocar is drawn back along the shaft that it comes to have, towards the trocar; that of before would
+/// lead aside.
+#[test]
+fn a_new_beginning_draws_a_shaft_back_towards_its_trocar() {
+    let mut page = Page::open(BAR);
+    let rest = page.surfaces[0].rest.0.clone();
+    let bounds = |axis: usize| {
+        let of_axis = rest.iter().skip(axis).step_by(3).map(|&x| f64::from(x));
+        of_axis.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let middle: [f64; 3] = std::array::from_fn(|axis| 0.5 * (bounds(axis).0 + bounds(axis).1));
+    let top = bounds(1).1;
+    let trocar = [middle[0] + 0.1, top + 0.2, middle[2] - 0.05];
+    let tip = [middle[0] - 0.1, top + 0.05, middle[2]];
+    page.say(Command::AddInstrument {
+        kind: "probe".into(),
+        tip: Some(tip),
+        direction: None,
+        trocar: Some(Trocar::At(trocar)),
+    });
+    page.step(1);
+    page.lead(0, middle, 0.0);
+    page.say(Command::Reset {});
+    let tip = Vec3::from(page.frame().instruments[0].tip);
+    let [middle, trocar] = [middle, trocar].map(Vec3::from);
+    let aside = (tip - middle).cross((trocar - middle).normalized().unwrap()).norm();
+    assert!(tip.y > top && tip.y < trocar.y && aside < 1e-12, "{tip:?} from {middle:?}");
 }
 
 /// What the engine refuses stops the clock with its reason; a reset goes on.

@@ -106,8 +106,9 @@ pub(crate) fn check_trocar(kind: &'static str, trocar: Option<Point>) -> Result<
 }
 
 impl ToolPose {
-    /// The pose as a trocar lets it be; its direction must have a length.
-    pub(crate) fn through(self, trocar: Option<Point>) -> Self {
+    /// The pose as a trocar [m] lets it be: its direction, of length 1, leads from there to its tip. Without a trocar, or with the tip in it,
+    /// its direction stays, which must have a length.
+    pub fn through(self, trocar: Option<Point>) -> Self {
         let through = trocar.and_then(|trocar| (self.tip - trocar).normalized());
         Self { direction: through.or(self.direction.normalized()).unwrap_or(DOWN), ..self }
     }

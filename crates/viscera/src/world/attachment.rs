@@ -43,6 +43,13 @@ pub(super) struct Grown {
     pub(super) force: Point,
 }
 
+impl Grown {
+    /// The attached body, and the one that it is attached to.
+    pub(super) fn ends(&self) -> [BodyId; 2] {
+        [BodyId(self.body), BodyId(self.to)]
+    }
+}
+
 impl<T: Scalar> World<T> {
     /// Grows a part of a body to another body, where both are now.
     ///
@@ -62,9 +69,7 @@ impl<T: Scalar> World<T> {
         {
             return Err(WorldError::AttachmentNeedsBlockJacobi { body: name, to: to_name });
         }
-        if matches!(self.config.integrator, Integrator::QuasiStatic(_)) && self.static_solver.factorises() {
-            return Err(WorldError::AttachmentNeedsIterative { body: name, to: to_name });
-        }
+        self.check_solver_of_ties(self.static_solver(), [body, to])?;
         if body == to {
             return Err(WorldError::AttachedToItself { body: name });
         }

@@ -245,8 +245,7 @@ pub enum StepError {
         /// (V − V0)/V0 that is left.
         error: f64,
     },
-    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 parts of it neither; or every solution
-    /// of backward Euler in full gained energy, and then little is left of the forces.
+    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 parts of it neither.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) does not converge: after {iterations} iterations of Newton's \
          method {residual:.1e} of its forces are left; the step is undone. Take a shorter step, more iterations (of the \
@@ -263,6 +262,24 @@ pub enum StepError {
         iterations: u32,
         /// What is left of the forces, over those that balance.
         residual: f64,
+    },
+    /// Full equations of backward Euler have solutions that gain energy from nobody only, in 64 parts of the step too.
+    #[error(
+        "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \
+         which is stretched {stretch:.3} times before the step: all solutions that were found gain energy; the step is undone. Take a \
+         shorter step, or the linearised one, or let the tissue go from less far"
+    )]
+    GainedEnergy {
+        /// Time at the beginning of the step [s].
+        time: f64,
+        /// Name of the body.
+        body: String,
+        /// Name of the law.
+        law: &'static str,
+        /// The most deformed cell before the step.
+        cell: usize,
+        /// Largest length of one of its edges over that at rest.
+        stretch: f64,
     },
     /// There is no equilibrium to go on to, or none was found.
     #[error("at {time:.4} s {error}; the step is undone")]

@@ -1,4 +1,4 @@
-use super::{BodyId, World};
+use super::{BodyId, Integrator, World, WorldError};
 use crate::dynamics::quasi_static::{QuasiStatic, StaticError, StaticReport, respond};
 use crate::math::{Scalar, Vec3};
 use crate::solver::{LinearSolver, SolverError};
@@ -20,12 +20,32 @@ impl<T: Scalar> World<T> {
     ///
     /// let integrator = Integrator::QuasiStatic(QuasiStatic::default());
     /// let mut world = World::<f64>::new(WorldConfig { integrator, ..WorldConfig::default() })?;
-    /// world.set_static_solver(Box::new(Envelope::default()));
+    /// world.set_static_solver(Box::new(Envelope::default()))?;
     /// assert!(world.static_solver().factorises());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn set_static_solver(&mut self, solver: Box<dyn LinearSolver>) {
+    ///
+    /// # Errors
+    /// [`WorldError::AttachmentNeedsIterative`] for a factorisation in a quasi-static world with attached bodies; the solver stays as it was.
+    pub fn set_static_solver(&mut self, solver: Box<dyn LinearSolver>) -> Result<(), WorldError> {
+        if let Some(grown) = self.attachments.first() {
+            self.check_solver_of_ties(solver.as_ref(), grown.ends())?;
+        }
         self.static_solver = solver;
+        Ok(())
+    }
+
+    /// A factorisation knows no ties between the `attached` body and the one that it is attached to.
+    pub(super) fn check_solver_of_ties(
+        &self,
+        solver: &dyn LinearSolver,
+        attached: [BodyId; 2],
+    ) -> Result<(), WorldError> {
+        if matches!(self.config.integrator, Integrator::QuasiStatic(_)) && solver.factorises() {
+            let [body, to] = attached.map(|id| self.bodies[id.0].name.clone());
+            return Err(WorldError::AttachmentNeedsIterative { body, to });
+        }
+        Ok(())
     }
 
     /// Brings a body to rest under the world's gravity, its loads and prescribed motions as they are now. Time stands

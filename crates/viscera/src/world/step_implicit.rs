@@ -1,4 +1,4 @@
-use super::step::{MOST_PARTS, Motion, moving};
+use super::step::{MOST_PARTS, Motion, most_deformed_cell, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
 use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Newton};
@@ -10,8 +10,14 @@ use crate::stage::{Stage, Stages};
 /// How often a step that is not solved, or that throws tissue across a hump, is made again in twice as many parts.
 const MOST_DIVISIONS: u32 = 6;
 
-/// A body whose step is not to be taken: it is not solved, or it gained energy from nobody.
-type Refused = (usize, ImplicitReport);
+/// Why the step of a body is not to be taken.
+#[derive(Clone, Copy)]
+enum Refused {
+    /// Its equations are not solved.
+    Unsolved(usize, ImplicitReport),
+    /// It gained energy from nobody.
+    GainedEnergy(usize),
+}
 
 impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
@@ -31,18 +37,15 @@ impl<T: Scalar> World<T> {
             let takes_gain = is_last && settings.newton == Newton::Linearised;
             let (report, refused) = self.advance_implicitly(span, settings, (parts, takes_gain), stages);
             let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
-            let error = match refused {
-                _ if !within => {
-                    self.undo();
-                    self.diverged()
-                }
-                Some((number, own)) => self.not_converged(number, &own),
-                None => return Ok(Motion { substeps: parts, retries, implicit: Some(report) }),
-            };
-            if is_last {
-                return Err(error);
+            if within && refused.is_none() {
+                return Ok(Motion { substeps: parts, retries, implicit: Some(report) });
             }
             self.undo();
+            if is_last {
+                return Err(refused
+                    .filter(|_| within)
+                    .map_or_else(|| self.diverged(), |refused| self.refusal(refused)));
+            }
             retries += 1;
         }
     }
@@ -78,8 +81,10 @@ impl<T: Scalar> World<T> {
                 let (own, has_gained) =
                     stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, stages));
                 let is_unsolved = !own.converged && settings.newton != Newton::Linearised;
-                if is_unsolved || (has_gained && !takes_gain) {
-                    refused = refused.or(Some((number, own)));
+                if is_unsolved {
+                    refused = refused.or(Some(Refused::Unsolved(number, own)));
+                } else if has_gained && !takes_gain {
+                    refused = refused.or(Some(Refused::GainedEnergy(number)));
                 }
                 report = report.worst(own);
             }
@@ -113,14 +118,19 @@ impl<T: Scalar> World<T> {
         if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
-    fn not_converged(&self, body: usize, report: &ImplicitReport) -> StepError {
-        let body = &self.bodies[body];
-        StepError::NotConverged {
-            time: self.time(),
-            body: body.name.clone(),
-            law: body.law(),
-            iterations: report.newton_iterations,
-            residual: report.residual,
+    fn refusal(&self, refused: Refused) -> StepError {
+        let time = self.time();
+        match refused {
+            Refused::Unsolved(number, report) => {
+                let body = &self.bodies[number];
+                let (iterations, residual) = (report.newton_iterations, report.residual);
+                StepError::NotConverged { time, body: body.name.clone(), law: body.law(), iterations, residual }
+            }
+            Refused::GainedEnergy(number) => {
+                let body = &self.bodies[number];
+                let (cell, stretch) = most_deformed_cell(body);
+                StepError::GainedEnergy { time, body: body.name.clone(), law: body.law(), cell, stretch }
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use viscera::material::{StVenantKirchhoff, Tissue};
 use viscera::math::Mat3;
 use viscera::mesh::{Region, TetMesh};
 use viscera::model::{Precision, TotalLagrangian};
-use viscera::solver::{Envelope, Stop};
+use viscera::solver::{Envelope, Iterative, Stop};
 use viscera::world::{Attachment, AttachmentId, BodyId, Integrator, Substep, World, WorldError};
 
 use super::support::*;
@@ -307,15 +307,20 @@ fn multigrid_is_refused() {
     assert_eq!(refused, WorldError::AttachmentNeedsBlockJacobi { body: "stomach".into(), to: "liver".into() });
 }
 
-/// A factorisation too.
+/// A factorisation too, whichever comes first.
 #[test]
 fn factorisation_of_equilibria_is_refused() {
     let mut world = world::<f64>(GRAVITY, 5e-3, Integrator::QuasiStatic(QuasiStatic::default()));
-    world.set_static_solver(Box::new(Envelope::default()));
     let body = |low: f64, name: &str| block([1, 1, 1], [0.02; 3], Vector::new(0.0, low, 0.0), 1e4).name(name);
     let [a, b] = [world.add(body(0.0, "liver")).unwrap(), world.add(body(0.02, "stomach")).unwrap()];
-    let refused = world.attach(Attachment { body: b, region: named("y-min"), to: a }).unwrap_err();
-    assert_eq!(refused, WorldError::AttachmentNeedsIterative { body: "stomach".into(), to: "liver".into() });
+    let expected = WorldError::AttachmentNeedsIterative { body: "stomach".into(), to: "liver".into() };
+    let attachment = Attachment { body: b, region: named("y-min"), to: a };
+    world.set_static_solver(Box::new(Envelope::default())).unwrap();
+    assert_eq!(world.attach(attachment.clone()).unwrap_err(), expected);
+    world.set_static_solver(Box::new(Iterative::default())).unwrap();
+    world.attach(attachment).unwrap();
+    assert_eq!(world.set_static_solver(Box::new(Envelope::default())).unwrap_err(), expected);
+    assert!(!world.static_solver().factorises());
 }
 
 /// What jaws hold at a tied node carries what hangs from the other body too.
