@@ -108,7 +108,7 @@ fn steps_that_throw_tissue_across_a_hump_are_made_in_parts() {
     assert!(again > 0);
 }
 
-/// A corner let go from thousands of sizes behind the other side, in steps of 20 s: some equations have solutions that gain energy only, in
+/// A corner let go from hundreds of sizes behind the other side, in steps of 20 s: some equations have solutions that gain energy only, in
 /// 64 parts too. Such a step is undone, and says so.
 #[test]
 fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
