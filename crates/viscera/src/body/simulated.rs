@@ -327,10 +327,11 @@ impl<T: Scalar> SimulatedBody<T> {
             return;
         }
         self.is_linearized = false;
-        state.internal_forces.fill(Vec3::ZERO);
-        for model in &state.models {
-            stages.run(Stage::Forces(model.name()), || {
-                model.add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
+        for (number, model) in state.models.iter().enumerate() {
+            let (x, scratch, out) = (&state.positions, &mut self.scratch, &mut state.internal_forces);
+            stages.run(Stage::Forces(model.name()), || match number {
+                0 => model.write_forces(x, scratch, out),
+                _ => model.add_forces(x, scratch, out),
             });
         }
     }

@@ -58,6 +58,12 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// tissue exerts on them is the negative.
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 
+    /// Writes those forces to `out`. A model that goes through the nodes at the end writes them then, and nothing is cleared before.
+    fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        out.fill(Vec3::ZERO);
+        self.add_forces(x, scratch, out);
+    }
+
     /// Prepares for products at `x` [m]: a model computes here, once, what all of them share, and keeps it in `scratch`.
     /// Products and blocks up to the next call have to be at that `x`, with the same cells. Most models have nothing to
     /// prepare.

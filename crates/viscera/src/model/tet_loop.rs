@@ -245,6 +245,10 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
     }
 
+    pub(crate) fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.order.write([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
+    }
+
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.order.add([x, dx], &Product(self), scratch.sums(self.sum_rows()).0, out);
     }

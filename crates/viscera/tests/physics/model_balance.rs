@@ -1,6 +1,7 @@
 //! Newton's third law inside a body: internal forces sum to nothing and turn nothing; homogeneous strain loads only the surface.
 
 use viscera::mesh::{CubeCut, TetMesh, VolumeMesh};
+use viscera::model::Scratch;
 
 use crate::support::{
     Evaluate, Random, Vector, deformed, hex_mesh, inner_nodes, largest, models_and_penalty, tet_mesh,
@@ -82,6 +83,20 @@ fn homogeneous_deformation_leaves_inner_nodes_without_force() {
                 let worst = inner.iter().map(|&node| forces[node].norm()).fold(0.0, f64::max);
                 assert!(worst <= 1e-13 * scale, "{}: {worst:e} of {scale:e}", named.name);
             }
+        }
+    }
+}
+
+/// Forces that are written take the place of what was there, to the bits of those that are added to nothing.
+#[test]
+fn written_forces_are_those_that_are_added() {
+    for mesh in [VolumeMesh::from(tet_mesh([2, 2, 2])), hex_mesh([2, 2, 2]).into()] {
+        let mut random = Random::new(53);
+        let x = deformed(&mesh, random.deformation(0.4), random.vector() * 0.1, 0.01, &mut random);
+        for named in models_and_penalty::<f64>(&mesh) {
+            let (mut scratch, mut written) = (Scratch::new(x.len()), random.vectors(x.len(), 1.0));
+            named.model.write_forces(&x, &mut scratch, &mut written);
+            assert_eq!(written, named.model.forces(&x), "{}", named.name);
         }
     }
 }

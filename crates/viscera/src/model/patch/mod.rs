@@ -137,6 +137,21 @@ impl Patches {
         });
     }
 
+    /// Writes to each node of `out` the sum of the rows of its copies.
+    pub(crate) fn write_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
+        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
+        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, out: NodeBlocks<'_, Vec3<T>>| {
+            let starts = &self.copy_starts[block * NODE_BLOCK..];
+            for (sum, ends) in out.0.iter_mut().zip(starts.windows(2)) {
+                let copies = &self.copies[ends[0] as usize..ends[1] as usize];
+                *sum = copies.iter().fold(Vec3::ZERO, |sum, &copy| {
+                    let [x, y, z, _] = rows[copy as usize];
+                    sum + Vec3::new(x, y, z)
+                });
+            }
+        });
+    }
+
     /// Writes to each node of `out` its mass times `dx` and the rows of its copies, filtered; gives `dx`·`out`.
     pub(crate) fn add_up_with_masses<T: Scalar>(
         &self,

@@ -177,6 +177,19 @@ impl TetFans {
         self.patches.add_up(executor, rows, out);
     }
 
+    /// The same, where they take the place of what is in `out`.
+    pub(crate) fn write<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+        &self,
+        fields: [&[Vec3<T>]; FIELDS],
+        element: &E,
+        sums: Sums<'_, T>,
+        out: &mut [Vec3<T>],
+    ) {
+        let Sums { executor, rows } = sums;
+        self.sum(fields, element, executor, rows);
+        self.patches.write_up(executor, rows, out);
+    }
+
     /// The same for a product along `dx`, with masses, filtered, into `out`; gives `dx`·`out`.
     pub(crate) fn product_with_masses<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
         &self,

@@ -142,6 +142,10 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.add_forces(x, scratch, out);
     }
 
+    fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.tets.write_forces(x, scratch, out);
+    }
+
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.tets.add_product(x, dx, scratch, out);
     }
