@@ -29,7 +29,7 @@ pub struct RangeTally {
     pub refused: Option<&'static str>,
     /// Settings in which every step was made.
     pub made: u32,
-    /// Settings in which a step was undone, with an error that says what to do, for each of [`KINDS`].
+    /// Settings in which a step was undone, with an error that says what to do, for each of those that there are.
     pub undone: [u32; KINDS.len()],
     /// Settings in which a number that is none came through.
     pub not_numbers: u32,

@@ -114,6 +114,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Stored energy W(x) [J].
     fn energy(&self, x: &[Vec3<T>]) -> f64;
 
+    /// Whether the forces are the gradient of that energy everywhere: what a step gains of it then tells of the step.
+    fn has_potential(&self) -> bool {
+        true
+    }
+
     /// Takes cells out of the body; their force, energy and stiffness are gone for good. A cell that is out already is
     /// left alone.
     fn remove(&mut self, cells: &[u32]);

@@ -22,15 +22,19 @@ const GAIN: f64 = 1e-6;
 const GAIN_ASTRAY: f64 = 0.01;
 
 impl<T: Scalar> Group<'_, T> {
-    /// Whether the step that is solved gained energy, and not from anybody. Tools, ties and driven nodes may give some.
+    /// Whether the step that is solved gained energy, and not from anybody. Tools, ties and driven nodes may give some, and forces without
+    /// a potential do in any step: of those only what went astray is looked at.
     pub(super) fn has_gained(&mut self) -> bool {
-        let share = match self.settings.newton {
-            Newton::Full { .. } => GAIN,
-            Newton::Linearised if self.went_astray => GAIN_ASTRAY,
-            Newton::Linearised => return false,
-        };
         let is_alone = matches!(self.together, Together::Alone(_));
-        is_alone && self.settings.scheme == Scheme::BackwardEuler && self.member(0).has_gained(share)
+        if !is_alone || self.settings.scheme != Scheme::BackwardEuler {
+            return false;
+        }
+        let (newton, went_astray) = (self.settings.newton, self.went_astray);
+        let step = self.member(0);
+        match newton {
+            Newton::Full { .. } => step.has_potential() && step.has_gained(GAIN),
+            Newton::Linearised => went_astray && step.has_gained(GAIN_ASTRAY),
+        }
     }
 }
 
@@ -58,6 +62,10 @@ impl<T: Scalar> Step<'_, T> {
         let rounding = T::EPSILON.to_f64() * (8.0 * (forces * places).sqrt() + 64.0 * about);
         let rounding = rounding + memory.rounding * places.sqrt();
         gain > share * about + rounding
+    }
+
+    fn has_potential(&self) -> bool {
+        self.body.state.models.iter().all(|model| model.has_potential())
     }
 
     /// Whether nodes are taken along by anything.

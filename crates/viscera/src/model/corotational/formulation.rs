@@ -157,6 +157,11 @@ impl Formulation {
         self.strain == StrainDisplacement::AtRest && self.volume == IntegrationVolume::Initial
     }
 
+    /// Whether the forces of an isotropic law are the gradient of [`Formulation::energy`].
+    pub(super) fn has_potential(self) -> bool {
+        self.is_linear_in_its_frame() && self.rotation != Rotation::Qr
+    }
+
     /// R A and s: with g = √(s V0) R A α, the frozen product is Σ_j [R C Rᵀ : sym(dx_j g_jᵀ)] g_i, with the law C turned by
     /// R: what linear elasticity costs.
     #[inline(always)]
@@ -168,8 +173,7 @@ impl Formulation {
         }
     }
 
-    /// s ½ ε:σ(ε) [J/m³]: what the element stores by its own strain, and the potential of its forces only for an isotropic
-    /// law, B at rest, initial volume, and the rotation `Polar` or `Svd`.
+    /// s ½ ε:σ(ε) [J/m³]: what the element stores by its own strain.
     #[inline(always)]
     pub(super) fn energy<R: Real>(self, hooke: &Hooke<R>, r: &Mat3<R>, f: &Mat3<R>) -> R {
         let Local { strain, scale, .. } = self.local(&(r.transpose() * *f));

@@ -250,6 +250,9 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
             }
         }
     }
+    fn has_potential(&self) -> bool {
+        false
+    }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let mut total = 0.0;

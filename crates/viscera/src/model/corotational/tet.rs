@@ -338,6 +338,9 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
             self.add_blocks(x, scratch, &mut DiagonalSink(out));
         }
     }
+    fn has_potential(&self) -> bool {
+        !self.fibred && self.formulation.has_potential()
+    }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let there = self.order.tetrahedra().filter(|tet| !tet.is_padding);

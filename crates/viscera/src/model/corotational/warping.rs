@@ -292,6 +292,10 @@ impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
         }
     }
 
+    fn has_potential(&self) -> bool {
+        false
+    }
+
     /// ½ V ε:σ(ε), the mean over the corners' rotations: a measure of deformation, not a potential of the forces.
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let of_cell = |cell: &Cell<T>| {

@@ -89,6 +89,9 @@ impl<T: Scalar> ForceModel<T> for HybridModel<T> {
             }
         }
     }
+    fn has_potential(&self) -> bool {
+        self.moving.has_potential()
+    }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let boundary = self.condensation.boundary();

@@ -217,6 +217,9 @@ impl<T: Scalar> ForceModel<T> for Neighbourhoods<T> {
             }
         }
     }
+    fn has_potential(&self) -> bool {
+        false
+    }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let place = |node: usize| x[node].cast::<f64>();

@@ -198,6 +198,10 @@ impl<T: Scalar> ForceModel<T> for TensorMassModel<T> {
         self.tetrahedra.add_blocks(nodal, &mut sink);
     }
 
+    fn has_potential(&self) -> bool {
+        self.squared_threshold.is_none()
+    }
+
     /// Energy of the full law, also where an adaptive model is linear.
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
         let displacement = self.shape.displacements(x, |arms| Frame::following(x, arms));
