@@ -266,6 +266,8 @@ for (const engine of ['native', 'wasm'] as const) {
           y: grip.y + (part / 8) * (lifted.y - grip.y),
         });
       await expect.poll(() => sag(page)).toBeGreaterThan(before + 0.005);
+      // The jaws come after the finger: only where they have arrived is their depth that of the first finger alone.
+      await comeToRest(page);
       // Up the page is away from the eye, which looks along −z here.
       const depth = () =>
         number(
