@@ -37,6 +37,17 @@ fn rest_holds_itself() {
     }
 }
 
+/// What steps expect of a model's energy is what it claims. That of shape memory jumps where neighbours are turned inside out.
+#[test]
+fn models_with_a_potential_are_those_that_claim_one() {
+    for mesh in meshes() {
+        for named in models_and_penalty::<f64>(&mesh) {
+            let expected = named.claims.conservative && !named.name.contains("shape-memory");
+            assert_eq!(named.model.has_potential(), expected, "{}", named.name);
+        }
+    }
+}
+
 /// Every component at every node. Five points are exact for polynomials of degree four, which all energies but that of
 /// the volume penalty are; rounding leaves 1e-16 W/h, 1e-9 of the largest force.
 #[test]
