@@ -154,6 +154,9 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     if parts == 1 {
         return work(first, data);
     }
+    if POOL && parts <= D::FEWEST {
+        return fold::<D, R, false>(first, parts, data, work, merge);
+    }
     let half = parts / 2;
     let (left, right) = data.divide(half);
     let left = || fold::<D, R, POOL>(first, half, left, work, merge);
@@ -167,12 +170,17 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
 
 /// Arrays that can be divided between threads.
 pub(crate) trait Divide: Send + Sized {
+    /// So many parts, or fewer, stay on one thread.
+    const FEWEST: usize = 1;
+
     /// The first `parts` parts, and the rest.
     fn divide(self, parts: usize) -> (Self, Self);
 }
 
-/// Nodes in a part of a nodal array: enough work to be worth handing over, and few enough to divide a small body evenly.
-pub(crate) const NODE_BLOCK: usize = 512;
+/// Nodes in a part of a nodal array: few enough to divide a small body evenly.
+pub(crate) const NODE_BLOCK: usize = 256;
+/// How many such parts are worth handing over, with half a microsecond of work or less in each.
+const FEWEST_BLOCKS: usize = 3;
 
 /// How many parts a nodal array has.
 pub(crate) fn node_blocks(nodes: usize) -> usize {
@@ -183,6 +191,8 @@ pub(crate) fn node_blocks(nodes: usize) -> usize {
 pub(crate) struct NodeBlocks<'a, V>(pub(crate) &'a mut [V]);
 
 impl<V: Send> Divide for NodeBlocks<'_, V> {
+    const FEWEST: usize = FEWEST_BLOCKS;
+
     fn divide(self, parts: usize) -> (Self, Self) {
         let (left, right) = self.0.split_at_mut(parts * NODE_BLOCK);
         (Self(left), Self(right))
@@ -193,6 +203,8 @@ impl<V: Send> Divide for NodeBlocks<'_, V> {
 pub(crate) struct ReadBlocks<'a, V>(pub(crate) &'a [V]);
 
 impl<V: Sync> Divide for ReadBlocks<'_, V> {
+    const FEWEST: usize = FEWEST_BLOCKS;
+
     fn divide(self, parts: usize) -> (Self, Self) {
         let (left, right) = self.0.split_at(parts * NODE_BLOCK);
         (Self(left), Self(right))
@@ -206,6 +218,8 @@ impl Divide for () {
 }
 
 impl<A: Divide, B: Divide> Divide for (A, B) {
+    const FEWEST: usize = if A::FEWEST > B::FEWEST { A::FEWEST } else { B::FEWEST };
+
     fn divide(self, parts: usize) -> (Self, Self) {
         let ((a, c), (b, d)) = (self.0.divide(parts), self.1.divide(parts));
         ((a, b), (c, d))

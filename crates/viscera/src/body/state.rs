@@ -180,6 +180,12 @@ pub(crate) struct MotionBackup<T> {
     volumes: Vec<KeptVolume>,
 }
 
+/// As one block of memory: `clone_from` goes from vector to vector.
+fn copy<V: Copy>(to: &mut Vec<V>, from: &[V]) {
+    to.resize(from.len(), from[0]);
+    to.copy_from_slice(from);
+}
+
 impl<T: Scalar> MotionBackup<T> {
     /// A first backup, which brings its memory with it.
     pub(crate) fn new(state: &BodyState<T>) -> Self {
@@ -190,11 +196,11 @@ impl<T: Scalar> MotionBackup<T> {
 
     /// Copies the motion of `state`.
     pub(crate) fn keep(&mut self, state: &BodyState<T>) {
-        self.positions.clone_from(&state.positions);
-        self.velocities.clone_from(&state.velocities);
-        self.internal_forces.clone_from(&state.internal_forces);
-        self.motions.clone_from(&state.motions);
-        self.grips.clone_from(&state.grips);
+        copy(&mut self.positions, &state.positions);
+        copy(&mut self.velocities, &state.velocities);
+        copy(&mut self.internal_forces, &state.internal_forces);
+        copy(&mut self.motions, &state.motions);
+        copy(&mut self.grips, &state.grips);
         self.forces_are_current = state.forces_are_current;
         self.squared_frequency = state.squared_frequency;
         self.past.copy_from(&state.past);

@@ -130,7 +130,7 @@ impl<R: Real> Law<R> for NeoHookean<R> {
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
         let At { square, cofactor, determinant, shape: [g, slope, curvature], pressure, .. } = self.at_deformation(f);
         let (a, b) = ((self.mu * curvature * square).half() + self.bulk(), self.mu * slope);
-        let area = felt_square(cofactor);
+        let area = felt_square(cofactor.squared_norm(), determinant, square);
         let trace = a * area + b * determinant * a.like(6.0);
         let apart = (square * area - (determinant * a.like(3.0)).squared()).max(a.zero_like());
         let largest = (trace + (trace.squared() + (b.squared() * apart) * a.like(4.0)).sqrt()).half();
@@ -138,12 +138,19 @@ impl<R: Real> Law<R> for NeoHookean<R> {
     }
 }
 
-/// 3 (⅓ Σσ⁸)^¼ of the stretches σ of `cofactor`, for c:c = Σσ²: as much at rest and more elsewhere, because a cell feels up
-/// to three times the square of the largest stretch.
+/// 3 (⅓ Σσ⁸)^¼ of the stretches σ of cof F, for c:c = Σσ²: as much at rest and more elsewhere, because a cell feels up
+/// to three times the square of the largest stretch. Of c:c = `area`, J = `determinant` and I_C = `square`.
+///
+/// The squares σ² are the roots of t³ − e₁ t² + e₂ t − e₃ with e₁ = c:c, e₂ = J² I_C, e₃ = J⁴, and the sum of their fourth powers is
+/// e₁⁴ − 4 e₁² e₂ + 2 e₂² + 4 e₁ e₃ (Newton), to 36 roundings where they are equal and fewer elsewhere; it is never below e₁⁴/27.
 #[inline(always)]
-pub(super) fn felt_square<R: Real>(cofactor: Mat3<R>) -> R {
-    let eighth_powers = Mat3::from(cofactor.gram()).gram().squared_norm();
-    eighth_powers.sqrt().sqrt() * eighth_powers.like(3.0_f64.powf(0.75))
+pub(super) fn felt_square<R: Real>(area: R, determinant: R, square: R) -> R {
+    let (e1, volume) = (area, determinant.squared());
+    let (e2, e3) = (volume * square, volume.squared());
+    let leading = e1.squared();
+    let eighth_powers = leading * (leading - e2 * e1.like(4.0)) + (e2.squared() + (e1 * e3).double()).double();
+    let least = leading.squared() * e1.like(1.0 / 27.0);
+    eighth_powers.max(least).sqrt().sqrt() * area.like(3.0_f64.powf(0.75))
 }
 
 /// Upper bound of p dF : ∂cof F/∂F : dF over |dF| = 1, for J = `determinant` and I_C = `square`.

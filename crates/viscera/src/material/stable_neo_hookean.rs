@@ -83,6 +83,7 @@ impl<R: Real> Law<R> for StableNeoHookean<R> {
         let share = one / (square + one);
         let shape = mu * (one - share) + (mu * share.squared() * square).double();
         let pressure = lambda * (determinant - one) - mu * mu.like(0.75);
-        lambda.mul_add(felt_square(cofactor), shape) + curvature_of_determinant(pressure, determinant, square)
+        lambda.mul_add(felt_square(cofactor.squared_norm(), determinant, square), shape)
+            + curvature_of_determinant(pressure, determinant, square)
     }
 }

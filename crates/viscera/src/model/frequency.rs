@@ -136,6 +136,9 @@ impl<L: LawFamily> TetMeasure for FrequencyMeasure<L> {
 /// Bound of what W = κ V0 |δ|³/3 adds to ∂P/∂F: 2κ|δ| ‖cof F‖² along the change of volume, κδ²‖F‖ across it.
 #[inline(always)]
 pub(crate) fn volume_stiffness<R: Real>(kappa: R, f: &Mat3<R>) -> R {
+    if !R::any(kappa.zero_like().less_than(kappa)) {
+        return kappa;
+    }
     let cofactor = f.cofactor();
     let delta = (f.columns[0].dot(cofactor.columns[0]) + kappa.like(-1.0)).abs();
     kappa * delta * (cofactor.squared_norm().double() + delta * f.squared_norm().sqrt())

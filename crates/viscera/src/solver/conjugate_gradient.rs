@@ -184,11 +184,10 @@ impl<T: Scalar> ConjugateGradient<T> {
             let known = problem.filters[nodes.clone()].iter().zip(&problem.prescribed[nodes]);
             x.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
         });
-        matrix.apply(x, &mut self.product);
-        self.residual.copy_from_slice(problem.rhs);
         let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
+        matrix.apply_along(x, &filtered, executor, &mut self.product);
+        self.residual.copy_from_slice(problem.rhs);
         filtered.apply(0, &mut self.residual);
-        filtered.apply(0, &mut self.product);
         let of_rhs = preconditioner.squared_norm(&self.residual, executor);
         let of_product = preconditioner.squared_norm(&self.product, executor);
         let data = (NodeBlocks(&mut self.residual), ReadBlocks(&self.product));

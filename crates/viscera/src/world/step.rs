@@ -5,7 +5,7 @@ use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
 use crate::executor::Executor;
 use crate::instrument::Span;
-use crate::math::Scalar;
+use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, StageObserver, Stages};
 
 /// Cells from which on threads pay. A step of 6 000 cells took a fifth longer on two threads than on one.
@@ -168,9 +168,17 @@ impl<T: Scalar> SimulatedBody<T> {
     /// Whether every number is finite, and no node was thrown in the step.
     pub(super) fn is_within_bounds(&self) -> bool {
         let farthest = T::from_f64(THROWN * self.size);
-        let (from, to) = (self.backup.positions(), &self.state.positions);
-        self.state.is_finite()
-            && from.iter().zip(to).all(|(&from, &to)| (to - from).squared_norm() <= farthest * farthest)
+        let ends = self.state.positions.iter().zip(&self.state.velocities);
+        // Without a branch for each node: one after the other takes four times as long.
+        let within = |from: Vec3<T>, to: Vec3<T>, velocity: Vec3<T>| {
+            let sum = to.x + to.y + to.z + (velocity.x + velocity.y + velocity.z);
+            sum.is_finite() & ((to - from).squared_norm() <= farthest * farthest)
+        };
+        self.backup
+            .positions()
+            .iter()
+            .zip(ends)
+            .fold(true, |all, (&from, (&to, &velocity))| all & within(from, to, velocity))
     }
 }
 

@@ -4,6 +4,7 @@ use super::Scheme;
 use super::step::Step;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
+use crate::solver::Filter;
 use crate::stage::Stage;
 
 /// Norms of the forces on free nodes [N].
@@ -53,11 +54,10 @@ impl<T: Scalar> Step<'_, T> {
         }
         let time = self.from + self.numbers.place * (self.drive.end - self.from);
         self.update_external_forces(time);
+        // Without, its forces stay the zeros that they are from the beginning.
         if self.body.damping > T::ZERO || self.body.stiffness_damping > T::ZERO {
             self.find_velocities(place);
             self.find_damping();
-        } else {
-            self.memory.damping.fill(Vec3::ZERO);
         }
         self.find_lack()
     }
@@ -139,8 +139,13 @@ impl<T: Scalar> Step<'_, T> {
                 let (external, internal) = (body.external_forces[node], body.state.internal_forces[node]);
                 let inertial = (increment[node] - coast[node]) * (inertia * body.state.masses[node]);
                 *lack = external - internal - damping[node] - inertial;
-                for (square, force) in squares.iter_mut().zip([*lack, inertial, external, internal]) {
-                    *square += filters[node].apply(force).squared_norm().to_f64();
+                let forces = [*lack, inertial, external, internal];
+                let decided = match &filters[node] {
+                    Filter::Free => forces,
+                    filter => forces.map(|force| filter.apply(force)),
+                };
+                for (square, force) in squares.iter_mut().zip(decided) {
+                    *square += force.squared_norm().to_f64();
                 }
             }
             squares

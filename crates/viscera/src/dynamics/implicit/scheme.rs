@@ -37,6 +37,7 @@ impl Scheme {
     }
 
     /// Where a node would go in `dt` [s] without forces.
+    #[inline]
     pub(super) fn coast<T: Scalar>(self, start: &Start<T>, dt: T) -> Coast<T> {
         match (self, start.past) {
             (Self::Newmark { beta, gamma }, _) => newmark::coast(start, dt, T::from_f64(beta), T::from_f64(gamma)),

@@ -1,7 +1,7 @@
 use super::Implicit;
 use super::memory::ImplicitMemory;
-use super::scheme::{Numbers, Past, Start};
-use crate::body::SimulatedBody;
+use super::scheme::{Coast, Numbers, Past, Start};
+use crate::body::{NodeMotion, SimulatedBody};
 use crate::dynamics::Drive;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
@@ -39,30 +39,36 @@ impl<T: Scalar> Step<'_, T> {
         let (body, drive, scheme, dt) = (&*self.body, self.drive, self.settings.scheme, T::from_f64(self.dt));
         let ImplicitMemory { increment, coast, coast_velocities, filters, lack, .. } = &mut *self.memory;
         let (state, lack, parts) = (&body.state, &lack[..], node_blocks(lack.len()));
+        let free = |node: usize| {
+            let past = state.past.is_known.then(|| Past {
+                increment: state.positions[node] - state.past.positions[node],
+                velocity: state.past.velocities[node],
+            });
+            let acceleration = if scheme.needs_acceleration() { lack[node] / state.masses[node] } else { Vec3::ZERO };
+            scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt)
+        };
         let data = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
         body.scratch.executor.each(parts, data, &|block, ((increment, coast), (coast_velocities, filters))| {
             increment.0.fill(Vec3::ZERO);
             for i in 0..coast.0.len() {
                 let node = block * NODE_BLOCK + i;
+                // Nearly all are.
+                if state.motions[node] == NodeMotion::Free {
+                    filters.0[i] = Filter::Free;
+                    Coast { increment: coast.0[i], velocity: coast_velocities.0[i] } = free(node);
+                    continue;
+                }
                 let position = state.positions[node];
                 let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
                 filters.0[i] = filter;
-                let (way, velocity) = match target {
+                (coast.0[i], coast_velocities.0[i]) = match target {
                     Some(target) if filter == Filter::Held => (target - position, Vec3::ZERO),
                     _ => {
-                        let past = state.past.is_known.then(|| Past {
-                            increment: position - state.past.positions[node],
-                            velocity: state.past.velocities[node],
-                        });
-                        let acceleration =
-                            if scheme.needs_acceleration() { lack[node] / state.masses[node] } else { Vec3::ZERO };
-                        let coast = scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt);
+                        let coast = free(node);
                         let merged = |target: Vec3<T>| filter.merge(coast.increment, target - position);
                         (target.map_or(coast.increment, merged), coast.velocity)
                     }
                 };
-                coast.0[i] = way;
-                coast_velocities.0[i] = velocity;
             }
         });
     }
@@ -113,9 +119,12 @@ impl<T: Scalar> Step<'_, T> {
     }
 }
 
+#[inline]
 fn end_velocity<T: Scalar>(memory: &ImplicitMemory<T>, numbers: Numbers, dt: f64, node: usize) -> Vec3<T> {
-    let driven = memory.increment[node] / T::from_f64(dt);
     let free = (memory.increment[node] - memory.coast[node])
         .mul_add(T::from_f64(numbers.velocity / dt), memory.coast_velocities[node]);
-    memory.filters[node].merge(free, driven)
+    match &memory.filters[node] {
+        Filter::Free => free,
+        filter => filter.merge(free, memory.increment[node] / T::from_f64(dt)),
+    }
 }
