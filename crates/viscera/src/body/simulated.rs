@@ -15,7 +15,6 @@ use crate::model::frequency::FrequencyBound;
 use crate::model::precomputed::Supports;
 use crate::model::{ModelKind, Precision, Scratch};
 use crate::solver::Filter;
-use crate::stage::{Stage, Stages};
 
 /// A body in a world: what never changes about it, its state, and memory to compute in.
 pub struct SimulatedBody<T: Scalar> {
@@ -58,6 +57,8 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) is_linearized: bool,
     /// Memory of explicit steps for the nodes that are not free.
     pub(crate) driven: Vec<Driven<T>>,
+    /// Whether nothing meets it between the sub-steps of an explicit step.
+    pub(crate) is_left_alone: bool,
     pub(crate) backup: MotionBackup<T>,
     pub(crate) pieces: Vec<u32>,
     /// Triangles of the surface as it is now, for tools that touch it; none without such tools.
@@ -171,6 +172,7 @@ impl<T: Scalar> SimulatedBody<T> {
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             is_linearized: false,
             driven: Vec::with_capacity(mesh.nodes().len()),
+            is_left_alone: false,
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],
             skin: Skin::default(),
@@ -318,51 +320,6 @@ impl<T: Scalar> SimulatedBody<T> {
     pub(crate) fn reserve_past(&mut self) {
         self.state.past.reserve(self.rest.len());
         self.backup = MotionBackup::new(&self.state);
-    }
-
-    /// Brings the internal forces up to date with positions and cells.
-    pub(crate) fn update_internal_forces(&mut self, stages: Stages) {
-        let state = &mut self.state;
-        if std::mem::replace(&mut state.forces_are_current, true) {
-            return;
-        }
-        self.is_linearized = false;
-        for (number, model) in state.models.iter().enumerate() {
-            let (x, scratch, out) = (&state.positions, &mut self.scratch, &mut state.internal_forces);
-            stages.run(Stage::Forces(model.name()), || match number {
-                0 => model.write_forces(x, scratch, out),
-                _ => model.add_forces(x, scratch, out),
-            });
-        }
-    }
-
-    /// Brings internal forces and what products need up to date together, which is less work than one after the other. Where only
-    /// the forces are current they are found again: the bits of a step must not depend on who looked at them before.
-    pub(crate) fn update_forces_and_linearize(&mut self, stages: Stages) {
-        if self.state.forces_are_current && self.is_linearized {
-            return;
-        }
-        self.is_linearized = false;
-        self.linearize(stages);
-        let state = &mut self.state;
-        state.internal_forces.fill(Vec3::ZERO);
-        for model in &state.models {
-            stages.run(Stage::Forces(model.name()), || {
-                model.add_forces_linearized(&state.positions, &mut self.scratch, &mut state.internal_forces);
-            });
-        }
-        state.forces_are_current = true;
-    }
-
-    /// Prepares the models for products at the positions, once for all of them.
-    pub(crate) fn linearize(&mut self, stages: Stages) {
-        if !std::mem::replace(&mut self.is_linearized, true) {
-            stages.run(Stage::Linearisation, || {
-                for model in &self.state.models {
-                    model.linearize(&self.state.positions, &mut self.scratch);
-                }
-            });
-        }
     }
 
     /// Bound of ω_max² at the current positions [1/s²].

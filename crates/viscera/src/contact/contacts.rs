@@ -85,6 +85,11 @@ impl Contacts {
         self.list.is_empty()
     }
 
+    /// Whether a tool may touch in the step.
+    pub(crate) fn are_possible(&self) -> bool {
+        !self.candidates.is_empty()
+    }
+
     pub(crate) fn clear(&mut self) {
         self.list.clear();
     }

@@ -14,7 +14,7 @@ use fearless_simd::dispatch;
 
 use super::Drive;
 use super::hold::Held;
-use crate::body::{Driven, NodeMotion, SimulatedBody, free_directions};
+use crate::body::{BodyState, Driven, NodeMotion, SimulatedBody, find_forces, free_directions};
 use crate::contact::{Contacts, Nodes};
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch_level};
@@ -73,20 +73,37 @@ impl<T: Scalar> SimulatedBody<T> {
     }
 }
 
-/// Prepares a body for the sub-steps of a step, over which the motions of nodes stay as they are: forces of its beginning, and the
-/// nodes that are not free.
-pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, time: f64, gravity: Vec3<T>, stages: Stages) {
+/// Prepares a body, tied to others or not, for the sub-steps of a step, over which the motions of nodes stay as they are: forces of its
+/// beginning, the nodes that are not free, and whether anything may meet it on the way.
+pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, is_tied: bool, time: f64, gravity: Vec3<T>, stages: Stages) {
     body.update_internal_forces(stages);
     stages.run(Stage::Loads, || body.update_external_forces(time, gravity));
     let others = body.state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
     body.driven.clear();
     body.driven.extend(others.map(|(node, _)| Driven { node, position: Vec3::ZERO, velocity: Vec3::ZERO }));
+    let is_held = body.driven.iter().any(|driven| matches!(body.state.motions[driven.node], NodeMotion::Held(_)));
+    let is_met = is_tied || is_held || body.contacts.are_possible();
+    body.is_left_alone = !is_met && body.constraints.is_empty() && !body.has_changing_forces();
 }
 
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
 pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     drift(body, dt, drive, stages);
     kick(body, dt, drive, stages);
+}
+
+/// The second half of a sub-step of `dt` [s] and the first half of the next in one, to the same bits, of a body that is
+/// left alone in between: one way through the nodes does for the sums of forces, both kicks and the drift.
+pub fn stride<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
+    let pace = Pace::new(dt, body.damping);
+    keep_driven(body);
+    sum_kick_and_drift(body, pace, stages);
+    stages.run(Stage::KickAndDrift, || {
+        kick_guided_twice(body, pace);
+        drive_nodes(body, dt, drive);
+    });
+    body.state.positions_changed();
+    body.is_linearized = false;
 }
 
 /// The first half of a sub-step of `dt` [s]: a kick, the drift, and what tools do about it. Internal and external forces must be those
@@ -144,11 +161,17 @@ fn touched<T: Scalar>(body: &mut SimulatedBody<T>) -> (&mut Contacts, Nodes<'_, 
 
 /// First half: v_½ and x⁺, and driven nodes to where they must be.
 fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
-    let (step, half, damping) = (T::from_f64(dt), T::from_f64(0.5 * dt), body.damping);
+    let pace = Pace::new(dt, body.damping);
     keep_driven(body);
     for_blocks(body, &|x, v, accelerations| {
-        dispatch!(dispatch_level(), _simd => kick_and_drift_freely(x, v, accelerations, half, step, damping));
+        dispatch!(dispatch_level(), _simd => kick_and_drift_freely(x, v, accelerations, pace));
     });
+    drive_nodes(body, dt, drive);
+}
+
+/// Puts driven nodes to where they must be after the drift.
+fn drive_nodes<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
+    let step = T::from_f64(dt);
     for i in 0..body.driven.len() {
         let Driven { node, position, .. } = body.driven[i];
         if let NodeMotion::Held(tool) = body.state.motions[node] {
@@ -165,11 +188,10 @@ fn kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive
 
 /// Second half: v⁺ from the forces at x⁺.
 fn kick_again<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>) {
-    let half = T::from_f64(0.5 * dt);
-    let damped = T::ONE / (T::ONE + half * body.damping);
+    let pace = Pace::new(dt, body.damping);
     keep_driven(body);
     for_blocks(body, &|_, v, accelerations| {
-        dispatch!(dispatch_level(), _simd => kick_freely(v, accelerations, half, damped));
+        dispatch!(dispatch_level(), _simd => kick_freely(v, accelerations, pace));
     });
     for i in 0..body.driven.len() {
         let Driven { node, velocity, position } = body.driven[i];
@@ -181,11 +203,65 @@ fn kick_again<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_,
     }
 }
 
+/// Finds the forces, kicks by them twice and drifts.
+fn sum_kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, pace: Pace<T>, stages: Stages) {
+    let SimulatedBody { state, scratch, external_forces, .. } = body;
+    let BodyState { models, positions, velocities, internal_forces, masses, .. } = state;
+    let patches = find_forces(models, positions, scratch, internal_forces, stages).map(|(_, patches)| patches);
+    let work = |block: usize, ((x, v), NodeBlocks(internal)): (Motion<'_, T>, NodeBlocks<'_, Vec3<T>>)| {
+        let nodes = block * NODE_BLOCK..block * NODE_BLOCK + internal.len();
+        dispatch!(dispatch_level(), _simd => {
+            if let Some(patches) = patches {
+                patches.write_up_block(block, scratch.summed(), internal);
+            }
+            let accelerations = (&external_forces[nodes.clone()], &*internal, &masses[nodes]);
+            kick_freely(v.0, accelerations, pace);
+            kick_and_drift_freely(x.0, v.0, accelerations, pace);
+        });
+    };
+    let data = ((NodeBlocks(positions), NodeBlocks(velocities)), NodeBlocks(internal_forces));
+    stages.run(Stage::KickAndDrift, || scratch.executor.each(node_blocks(masses.len()), data, &work));
+}
+
+/// Kicks guided nodes once more from where they were: guides hold them between the two kicks.
+fn kick_guided_twice<T: Scalar>(body: &mut SimulatedBody<T>, pace: Pace<T>) {
+    let is_guided = |driven: &&Driven<T>| matches!(body.state.motions[driven.node], NodeMotion::Guided(_));
+    for &Driven { node, position, velocity } in body.driven.iter().filter(is_guided) {
+        let only = node..=node;
+        let (external, internal) = (&body.external_forces[only.clone()], &body.state.internal_forces[only.clone()]);
+        let accelerations = (external, internal, &body.state.masses[only]);
+        let (mut x, mut v) = ([position], [velocity]);
+        kick_freely(&mut v, accelerations, pace);
+        v[0] = free_directions(&body.guides, body.state.motions[node]).merge(v[0], velocity);
+        kick_and_drift_freely(&mut x, &mut v, accelerations, pace);
+        body.state.velocities[node] = v[0];
+    }
+}
+
 /// Remembers where the nodes are that are not free, and how fast.
 fn keep_driven<T: Scalar>(body: &mut SimulatedBody<T>) {
     for driven in &mut body.driven {
         driven.position = body.state.positions[driven.node];
         driven.velocity = body.state.velocities[driven.node];
+    }
+}
+
+/// A sub-step, and what damping makes of it.
+#[derive(Clone, Copy)]
+struct Pace<T> {
+    /// Its length [s], and half of it.
+    step: T,
+    half: T,
+    /// Damping rate [1/s].
+    damping: T,
+    /// What is left of a velocity after the second kick.
+    damped: T,
+}
+
+impl<T: Scalar> Pace<T> {
+    fn new(dt: f64, damping: T) -> Self {
+        let half = T::from_f64(0.5 * dt);
+        Self { step: T::from_f64(dt), half, damping, damped: T::ONE / (T::ONE + half * damping) }
     }
 }
 
@@ -215,9 +291,7 @@ fn kick_and_drift_freely<T: Scalar>(
     x: &mut [Vec3<T>],
     v: &mut [Vec3<T>],
     (external, internal, masses): Accelerations<'_, T>,
-    half: T,
-    step: T,
-    damping: T,
+    Pace { step, half, damping, .. }: Pace<T>,
 ) {
     for ((((x, v), &external), &internal), &mass) in x.iter_mut().zip(v).zip(external).zip(internal).zip(masses) {
         let acceleration = (external - internal) * (T::ONE / mass) - *v * damping;
@@ -227,7 +301,11 @@ fn kick_and_drift_freely<T: Scalar>(
 }
 
 #[inline(always)]
-fn kick_freely<T: Scalar>(v: &mut [Vec3<T>], (external, internal, masses): Accelerations<'_, T>, half: T, damped: T) {
+fn kick_freely<T: Scalar>(
+    v: &mut [Vec3<T>],
+    (external, internal, masses): Accelerations<'_, T>,
+    Pace { half, damped, .. }: Pace<T>,
+) {
     for (((v, &external), &internal), &mass) in v.iter_mut().zip(external).zip(internal).zip(masses) {
         *v = (external - internal).mul_add(half / mass, *v) * damped;
     }

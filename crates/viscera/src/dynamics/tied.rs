@@ -41,7 +41,7 @@ pub(super) struct TiedNode {
 #[derive(Debug)]
 pub(crate) struct TiedBodies<T> {
     /// Numbers of the bodies in their world, ascending.
-    pub(super) bodies: Vec<usize>,
+    pub(crate) bodies: Vec<usize>,
     pub(super) nodes: Vec<TiedNode>,
     /// Number of the attachment of each tie, and which of the bodies its node is of.
     pub(super) attachments: Vec<(usize, usize)>,

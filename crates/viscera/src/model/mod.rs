@@ -31,6 +31,7 @@ pub use hybrid::Hybrid;
 pub use linear_tensor_mass::LinearTensorMass;
 pub use mass_spring::MassSpring;
 pub use nodally_integrated::NodallyIntegrated;
+pub use patch::Patches;
 pub use precision::Precision;
 pub use precomputed::Precomputed;
 pub use recipe::ModelRecipe;
@@ -58,10 +59,10 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// tissue exerts on them is the negative.
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 
-    /// Writes those forces to `out`. A model that goes through the nodes at the end writes them then, and nothing is cleared before.
-    fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        out.fill(Vec3::ZERO);
-        self.add_forces(x, scratch, out);
+    /// Sums those forces on copies of the nodes in `scratch`, and says where the copies are: who goes through the nodes next adds them up on
+    /// the way. None, and nothing is done, in a model that knows no copies.
+    fn sum_forces(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) -> Option<&Patches> {
+        None
     }
 
     /// Prepares for products at `x` [m]: a model computes here, once, what all of them share, and keeps it in `scratch`.
@@ -211,6 +212,16 @@ impl<T: Scalar> Scratch<T> {
         let kept = models.iter().map(|model| model.linearization_len()).max().unwrap_or(0);
         let sums = models.iter().map(|model| model.sum_rows()).max().unwrap_or(0);
         Self { linearization: vec![T::ZERO; kept], sums: vec![[T::ZERO; 4]; sums], ..Self::new(nodes) }
+    }
+
+    /// Rows of the copies of nodes, as they were summed last.
+    pub(crate) fn summed(&self) -> &[[T; 4]] {
+        &self.sums
+    }
+
+    /// Writes to each node of `out` the sum of what [`ForceModel::sum_forces`] left on its copies.
+    pub fn write_sums(&self, patches: &Patches, out: &mut [Vec3<T>]) {
+        patches.write_up(&self.executor, &self.sums, out);
     }
 
     /// `len` rows to sum in, and beside them what was kept for products; scratch made for the body's models has the room already.

@@ -34,7 +34,7 @@ impl Sections {
             touched.dedup();
             touched
         };
-        let copies = Patches::over(nodes, (0..batches.div_ceil(BATCHES)).map(touched));
+        let copies = Patches::over(nodes, (0..batches.div_ceil(BATCHES)).map(touched), None);
         let mut rows = vec![0; table.len()];
         for section in 0..copies.count() {
             let own = copies.nodes(section);

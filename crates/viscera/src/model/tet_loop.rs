@@ -7,7 +7,7 @@ use fearless_simd::Simd;
 
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
-use super::patch::{Diagonal, Element, Measure, TetFans};
+use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
 use super::{BlockSink, Inertia, ModelError, Scratch};
 use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
@@ -245,8 +245,8 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
     }
 
-    pub(crate) fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.order.write([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
+    pub(crate) fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
+        self.order.sum([x], &Forces(self), scratch.sums(self.sum_rows()).0)
     }
 
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {

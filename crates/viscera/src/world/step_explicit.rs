@@ -104,8 +104,9 @@ impl<T: Scalar> World<T> {
         let dt = leg.substep(self.config.step);
         let gravity = Vec3::from(self.config.gravity).cast();
         let start = span.at(leg.from);
-        for body in moving(&mut self.bodies) {
-            explicit::begin(body, start, gravity, stages);
+        for (number, body) in self.bodies.iter_mut().enumerate().filter(|(_, body)| body.moves()) {
+            let is_tied = self.tied.iter().any(|tied| tied.bodies.contains(&number));
+            explicit::begin(body, is_tied, start, gravity, stages);
         }
         self.begin_ties(stages);
         for substep in 1..=leg.substeps {
@@ -113,12 +114,17 @@ impl<T: Scalar> World<T> {
             stages.run(Stage::Instruments, || self.move_tools(span, leg.share(substep - 1), leg.share(substep)));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             for body in moving(&mut self.bodies) {
-                explicit::drift(body, dt, &drive, stages);
+                if body.is_left_alone && substep > 1 {
+                    explicit::stride(body, dt, &drive, stages);
+                } else {
+                    explicit::drift(body, dt, &drive, stages);
+                }
             }
             self.hold_together(dt, Aim::Place, stages);
             self.restrain(stages, |body| body.restore_places(dt));
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
-            for body in moving(&mut self.bodies) {
+            let is_last = substep == leg.substeps;
+            for body in moving(&mut self.bodies).filter(|body| is_last || !body.is_left_alone) {
                 explicit::kick(body, dt, &drive, stages);
             }
             self.hold_together(dt, Aim::Velocity, stages);

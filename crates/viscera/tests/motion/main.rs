@@ -14,6 +14,7 @@ mod guides;
 mod inside_out;
 mod reference_cylinder;
 mod reference_tube;
+mod strides;
 mod support;
 mod threads;
 mod world_invariance;

@@ -17,7 +17,7 @@ use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
 use crate::model::patch::{Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
-use crate::model::{ForceModel, Inertia, ModelError, Scratch};
+use crate::model::{ForceModel, Inertia, ModelError, Patches, Scratch};
 
 /// Columns before those of the law: Dm⁻¹ by columns, V0.
 const SHAPE: usize = 10;
@@ -263,6 +263,10 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
+    }
+
+    fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        Some(self.order.sum([x], &Forces(self), scratch.sums(self.sum_rows()).0))
     }
 
     fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {

@@ -32,14 +32,16 @@ pub(crate) fn no_rows<T: Scalar, const FIELDS: usize>() -> [PatchRows<T>; FIELDS
     [[[T::ZERO; 4]; PATCH_NODES]; FIELDS]
 }
 
-/// The patches of a mesh.
+/// The patches of a mesh, and where the copies of its nodes are in them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Patches {
+pub struct Patches {
     /// Nodes of each patch, patch after patch.
     nodes: Vec<u32>,
     /// Where each patch begins in `nodes`, and the end.
     starts: Vec<usize>,
-    /// Where the copies of each node are, node after node: their places in `nodes`.
+    /// Where the rows of each patch begin, and the end.
+    row_starts: Vec<usize>,
+    /// The rows of the copies of each node, node after node.
     copies: Vec<u32>,
     /// Where each node begins in `copies`, and the end.
     copy_starts: Vec<u32>,
@@ -55,20 +57,24 @@ impl Patches {
             touched.dedup();
             touched
         };
-        (Self::over(nodes.len(), parts.iter().map(touched)), parts)
+        (Self::over(nodes.len(), parts.iter().map(touched), Some(PATCH_NODES)), parts)
     }
 
-    /// Parts of a mesh of `nodes` nodes that touch the nodes of `parts`, in ascending order.
-    pub(crate) fn over(nodes: usize, parts: impl Iterator<Item = Vec<u32>>) -> Self {
-        let mut patches = Self { nodes: Vec::new(), starts: vec![0], copies: Vec::new(), copy_starts: Vec::new() };
+    /// Parts of a mesh of `nodes` nodes that touch the nodes of `parts`, in ascending order; of as many `rows`, or as many as they have nodes.
+    pub(crate) fn over(nodes: usize, parts: impl Iterator<Item = Vec<u32>>, rows: Option<usize>) -> Self {
+        let mut patches = Self { starts: vec![0], row_starts: vec![0], ..Self::default() };
+        let mut copies = Vec::new();
         for mut touched in parts {
+            let first = patches.copies();
+            copies.extend(touched.iter().zip(first..).map(|(&node, row)| (node, row as u32)));
+            patches.row_starts.push(first + rows.unwrap_or(touched.len()));
             patches.nodes.append(&mut touched);
             patches.starts.push(patches.nodes.len());
         }
-        patches.copies = (0..patches.nodes.len() as u32).collect();
-        patches.copies.sort_by_key(|&copy| patches.nodes[copy as usize]);
+        copies.sort_by_key(|&(node, _)| node);
+        patches.copies = copies.iter().map(|&(_, row)| row).collect();
         let mut ends = vec![0; nodes + 1];
-        for &node in &patches.nodes {
+        for (node, _) in copies {
             ends[node as usize + 1] += 1;
         }
         for node in 0..nodes {
@@ -83,9 +89,9 @@ impl Patches {
         self.starts.len() - 1
     }
 
-    /// Copies of nodes in all patches together.
+    /// Rows for the copies of nodes in all patches together.
     pub(crate) fn copies(&self) -> usize {
-        self.nodes.len()
+        self.row_starts[self.count()]
     }
 
     /// Nodes of a patch, in ascending order.
@@ -125,31 +131,35 @@ impl Patches {
         width: usize,
         work: &(impl Fn(usize, &mut [[T; 4]]) + Sync),
     ) {
-        let data = PerPatch { values: rows, starts: &self.starts, width };
+        let data = PerPatch { values: rows, starts: &self.row_starts, width };
         executor.each(self.count(), data, &|patch, part: PerPatch<'_, [T; 4]>| work(patch, part.values));
     }
 
     /// Adds to each node of `out` the rows of its copies.
     pub(crate) fn add_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        self.for_copies(executor, out, &|sum: &mut Vec3<T>, copy| {
-            let [x, y, z, _] = rows[copy];
-            *sum += Vec3::new(x, y, z);
-        });
+        self.for_copies(executor, out, &|sum: &mut Vec3<T>, copy| *sum += first_three(rows[copy]));
     }
 
     /// Writes to each node of `out` the sum of the rows of its copies.
     pub(crate) fn write_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
-        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, out: NodeBlocks<'_, Vec3<T>>| {
-            let starts = &self.copy_starts[block * NODE_BLOCK..];
-            for (sum, ends) in out.0.iter_mut().zip(starts.windows(2)) {
-                let copies = &self.copies[ends[0] as usize..ends[1] as usize];
-                *sum = copies.iter().fold(Vec3::ZERO, |sum, &copy| {
-                    let [x, y, z, _] = rows[copy as usize];
-                    sum + Vec3::new(x, y, z)
-                });
-            }
+        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
+            self.write_up_block(block, rows, out);
         });
+    }
+
+    /// The same for a block of nodes.
+    #[inline(always)]
+    pub(crate) fn write_up_block<T: Scalar>(&self, block: usize, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
+        let ends = &self.copy_starts[block * NODE_BLOCK..];
+        for (sum, ends) in out.iter_mut().zip(ends.windows(2)) {
+            let copies = &self.copies[ends[0] as usize..ends[1] as usize];
+            // Most nodes have one.
+            *sum = copies.split_first().map_or(Vec3::ZERO, |(&first, others)| {
+                others
+                    .iter()
+                    .fold(first_three(rows[first as usize]), |sum, &copy| sum + first_three(rows[copy as usize]))
+            });
+        }
     }
 
     /// Writes to each node of `out` its mass times `dx` and the rows of its copies, filtered; gives `dx`·`out`.
@@ -167,9 +177,9 @@ impl Patches {
             let ends = self.copy_starts[nodes.start..=nodes.end].windows(2);
             for (((sum, ends), &dx), &mass) in out.iter_mut().zip(ends).zip(dx).zip(masses) {
                 *sum = dx * mass;
-                for &copy in &self.copies[ends[0] as usize..ends[1] as usize] {
-                    let [x, y, z, _] = rows[copy as usize];
-                    *sum += Vec3::new(x, y, z);
+                if let Some((&first, others)) = self.copies[ends[0] as usize..ends[1] as usize].split_first() {
+                    *sum += first_three(rows[first as usize]);
+                    others.iter().for_each(|&copy| *sum += first_three(rows[copy as usize]));
                 }
             }
             inertia.filtered.apply(nodes.start, out);
@@ -206,6 +216,12 @@ impl Patches {
             }
         });
     }
+}
+
+/// The force in a row.
+#[inline(always)]
+fn first_three<T: Scalar>([x, y, z, _]: [T; 4]) -> Vec3<T> {
+    Vec3::new(x, y, z)
 }
 
 /// Values of the patches, patch after patch.

@@ -173,21 +173,7 @@ impl TetFans {
         out: &mut [Vec3<T>],
     ) {
         let Sums { executor, rows } = sums;
-        self.sum(fields, element, executor, rows);
-        self.patches.add_up(executor, rows, out);
-    }
-
-    /// The same, where they take the place of what is in `out`.
-    pub(crate) fn write<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
-        &self,
-        fields: [&[Vec3<T>]; FIELDS],
-        element: &E,
-        sums: Sums<'_, T>,
-        out: &mut [Vec3<T>],
-    ) {
-        let Sums { executor, rows } = sums;
-        self.sum(fields, element, executor, rows);
-        self.patches.write_up(executor, rows, out);
+        self.sum(fields, element, Sums { executor, rows: &mut *rows }).add_up(executor, rows, out);
     }
 
     /// The same for a product along `dx`, with masses, filtered, into `out`; gives `dx`·`out`.
@@ -200,29 +186,34 @@ impl TetFans {
         out: &mut [Vec3<T>],
     ) -> f64 {
         let Sums { executor, rows } = sums;
-        self.sum(fields, element, executor, rows);
-        self.patches.add_up_with_masses(executor, rows, (dx, inertia), out)
+        self.sum(fields, element, Sums { executor, rows: &mut *rows }).add_up_with_masses(
+            executor,
+            rows,
+            (dx, inertia),
+            out,
+        )
     }
 
-    /// Sums the forces of each patch.
-    fn sum<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+    /// Sums the forces of each patch on copies of its nodes, in the first rows.
+    pub(crate) fn sum<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
         &self,
         fields: [&[Vec3<T>]; FIELDS],
         element: &E,
-        executor: &Executor,
-        rows: &mut [[T; 4]],
-    ) {
+        Sums { executor, rows }: Sums<'_, T>,
+    ) -> &Patches {
         let rows = &mut rows[..self.patches.copies()];
         self.patches.each(executor, rows, 1, &|patch, rows| {
-            let (mut places, mut sums) = (no_rows(), no_rows::<T, 1>());
+            let ([sums], _) = rows.as_chunks_mut() else { return };
+            let mut places = no_rows();
+            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
             self.patches.gather(patch, &fields, &mut places);
             if E::IS_WIDE {
-                dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, &mut sums[0]));
+                dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, sums));
             } else {
-                self.scatter(baseline(), patch, &places, element, &mut sums[0]);
+                self.scatter(baseline(), patch, &places, element, sums);
             }
-            rows.copy_from_slice(&sums[0][..rows.len()]);
         });
+        &self.patches
     }
 
     #[inline(always)]
@@ -256,7 +247,7 @@ impl TetFans {
             } else {
                 self.scatter_blocks(baseline(), patch, &places, element, &mut sums);
             }
-            for (node, pair) in rows.chunks_exact_mut(2).enumerate() {
+            for (node, pair) in rows.chunks_exact_mut(2).enumerate().take(self.patches.nodes(patch).len()) {
                 (pair[0], pair[1]) = (sums[0][node], sums[1][node]);
             }
         });

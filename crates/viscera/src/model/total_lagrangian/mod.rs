@@ -15,8 +15,8 @@ use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{
-    BlockSink, ForceModel, GenericRecipe, Inertia, MeanForces, ModelError, ModelInfo, ModelKind, Precision, Scratch,
-    recipe,
+    BlockSink, ForceModel, GenericRecipe, Inertia, MeanForces, ModelError, ModelInfo, ModelKind, Patches, Precision,
+    Scratch, recipe,
 };
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Mat3, Scalar, Vec3};
@@ -142,8 +142,8 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.add_forces(x, scratch, out);
     }
 
-    fn write_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.tets.write_forces(x, scratch, out);
+    fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        Some(self.tets.sum_forces(x, scratch))
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
