@@ -4,6 +4,7 @@ use viscera::body::Body;
 use viscera::dynamics::implicit::{Implicit, Newton, Scheme};
 use viscera::material::{LinearElastic, NeoHookean, StableNeoHookean};
 use viscera::mesh::{TetMesh, VolumeMesh};
+use viscera::model::corotational::Tangent;
 use viscera::model::{Corotational, ModelRecipe, NodallyIntegrated, StiffnessWarping, TotalLagrangian};
 use viscera::solver::Stop;
 use viscera::world::{BodyId, StepError, World};
@@ -73,6 +74,29 @@ fn a_step_that_is_not_solved_whole_is_made_in_parts() {
     assert!(again > 0 && world.body(id).max_displacement() < 1e-5, "{}", world.body(id).max_displacement());
 }
 
+/// Full steps of a cube that nothing holds, turned inside out or let go at a thousand times its length: the forces alone led Newton's method
+/// about for 100 iterations, in 64 parts of the step as well. Along directions in which the potential falls it arrives.
+#[test]
+fn full_steps_out_of_impossible_shapes_are_solved() {
+    let settings =
+        Implicit { newton: Newton::Full { relative: 1e-8, at_most: 100 }, ..Implicit::accurate(Scheme::BackwardEuler) };
+    let settings = Implicit { linear: Stop::Tolerance { relative: 1e-6, at_most: 100 }, ..settings };
+    let turned = Corotational::new(linear_tissue()).tangent(Tangent::Exact);
+    let turned = Body::new(TetMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(turned);
+    let direct = Body::new(TetMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(TotalLagrangian::new(neo_hookean()));
+    for (body, stretch) in [(turned, -1.0), (direct, 1000.0)] {
+        let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, settings, body.damping(50.0));
+        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, stretch * x.z));
+        let mut before = energy(&mut world, id);
+        for _ in 0..3 {
+            world.step().unwrap();
+            let now = energy(&mut world, id);
+            assert!(now < before, "{now} J after {before} J, from {stretch} times the length");
+            before = now;
+        }
+    }
+}
+
 /// Linearised backward Euler gains no energy from tissue integrated at the nodes and let go at a thousand times its length. It
 /// rose to 6000 times the energy at the start where linear solves that had climbed were taken.
 #[test]
@@ -108,8 +132,8 @@ fn steps_that_throw_tissue_across_a_hump_are_made_in_parts() {
     assert!(again > 0);
 }
 
-/// A corner let go from hundreds of sizes behind the other side, in steps of 20 s: some equations have solutions that gain energy only, in
-/// 64 parts too. Such a step is undone, and says so.
+/// A corner let go from a thousand sizes behind the other side, or more, in steps of 20 s: where rounding wills it, in one case of ten, the
+/// solution that is found gains energy, in 64 parts too. Such a step is undone, and says so.
 #[test]
 fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
     let newton = Newton::Full { relative: 1e-4, at_most: 200 };
@@ -119,15 +143,19 @@ fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
         ..Implicit::accurate(Scheme::BackwardEuler)
     };
     let mut said = 0;
-    for depth in [50.0, 80.0, 100.0, 130.0, 200.0] {
+    for depth in (0..40).map(|number| 100.0 * 1.05_f64.powi(number)) {
         let body = Body::new(tetrahedra(), 1000.0).model(TotalLagrangian::new(neo_hookean())).damping(50.0).fix(root());
         let (mut world, id) = implicit_world(NO_GRAVITY, 20.0, settings, body);
         let corner = Vector::splat(0.1);
         world.body_mut(id).set_positions(|x| if x == corner { Vector::new(x.x, x.y, -depth) } else { x });
+        let mut start = energy(&mut world, id);
+        let rounding = f64::EPSILON * start;
         for _ in 0..6 {
-            let (before, start) = (world.body(id).positions().to_vec(), energy(&mut world, id));
+            let before = world.body(id).positions().to_vec();
             let Err(error) = world.step() else {
-                assert!(energy(&mut world, id) <= start);
+                let now = energy(&mut world, id);
+                assert!(now <= start + rounding, "{now} J after {start} J");
+                start = now;
                 continue;
             };
             assert_eq!(world.body(id).positions(), &before[..]);

@@ -21,6 +21,11 @@ const CONTENT: f64 = 0.9;
 /// It goes farther while more than this share of the work is left to be done: tissue that softens on the way has its
 /// correction from the masses alone, and crawled.
 const STEEP: f64 = 0.5;
+/// Iterations of Newton's method after which the line search asks that the potential of the step falls, where there is one: tissue that
+/// starts a thousand times too long, or inside out, was led about by the forces alone.
+const LOST: u32 = 10;
+/// The potential falls by more than this share of what its slope promises (Armijo).
+const ENOUGH: f64 = 1e-4;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
 /// The most solves of a linearised step between which contacts close or open.
@@ -51,7 +56,7 @@ impl<T: Scalar> Group<'_, T> {
             // The forces there serve the next step.
             let after = self.evaluate();
             // A step that ends on a slope steeper than that which it went down has climbed.
-            let climbed = arrived && self.work() > gain && after.lack > ASTRAY * before.lack;
+            let climbed = arrived && after.lack > ASTRAY * before.lack && self.work() > gain;
             let astray = climbed || after.lack > before.lack.max(ASTRAY * after.scale);
             let astray = astray && after.lack > solve.rounding;
             if !astray && after.lack.is_finite() {
@@ -109,20 +114,26 @@ impl<T: Scalar> Group<'_, T> {
             report.newton_iterations += 1;
             report.linear_iterations += solve.iterations;
             report.negative_curvature |= solve.negative_curvature;
-            balance = self.search(arrived);
+            let is_lost = arrived && report.newton_iterations > LOST;
+            balance = self.search(arrived, is_lost);
         }
     }
 
     /// Moves along the correction, as far as it leads towards balance: neither up again nor where most of the way down is left.
-    /// A step that takes driven nodes along is taken whole.
-    fn search(&mut self, arrived: bool) -> Balance {
+    /// A step that takes driven nodes along is taken whole. One that is lost has its potential looked at as well.
+    fn search(&mut self, arrived: bool, is_lost: bool) -> Balance {
         let before = self.work();
+        let start = if is_lost { self.potential() } else { None };
         let (mut length, mut descends, mut climbs) = (1.0, 0.0, f64::INFINITY);
         self.move_by(length);
         let mut balance = self.evaluate();
         for _ in 1..TRIALS {
             let after = self.work();
-            let finite = balance.lack.is_finite() && after.is_finite();
+            let falls = start.is_none_or(|start| {
+                let promised = ENOUGH * length * before;
+                self.potential().is_some_and(|now| now.energy <= start.energy + promised + start.rounding)
+            });
+            let finite = balance.lack.is_finite() && after.is_finite() && falls;
             if finite && (!arrived || (after <= CONTENT * before.abs() && after >= -STEEP * before.abs())) {
                 break;
             }
