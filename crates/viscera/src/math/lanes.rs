@@ -188,17 +188,39 @@ impl_lanes!(f64, f64x4, 4, "f64", gather_four, scatter_add_four_doubles);
 
 #[inline(always)]
 fn gather_eight_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> [f32x8<S>; 4] {
-    let [x0, y0, z0, w0]: [f32x4<S>; 4] = gather_four(simd, rows, &nodes[..4]);
-    let [x1, y1, z1, w1]: [f32x4<S>; 4] = gather_four(simd, rows, &nodes[4..8]);
-    [x0.combine(x1), y0.combine(y1), z0.combine(z1), w0.combine(w1)]
+    let (a, b) = (two_rows(simd, rows, &nodes[..2]), two_rows(simd, rows, &nodes[2..4]));
+    let (c, d) = (two_rows(simd, rows, &nodes[4..6]), two_rows(simd, rows, &nodes[6..8]));
+    let (xz_low, yw_low) = (a.unzip_low(b), a.unzip_high(b));
+    let (xz_high, yw_high) = (c.unzip_low(d), c.unzip_high(d));
+    [xz_low.unzip_low(xz_high), yw_low.unzip_low(yw_high), xz_low.unzip_high(xz_high), yw_low.unzip_high(yw_high)]
+}
+
+/// Two rows, one after the other.
+#[inline(always)]
+fn two_rows<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> f32x8<S> {
+    let first = f32x4::from_slice(simd, &rows[nodes[0] as usize]);
+    first.combine(f32x4::from_slice(simd, &rows[nodes[1] as usize]))
 }
 
 #[inline(always)]
 fn scatter_add_eight_singles<S: Simd>([x, y, z]: [f32x8<S>; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
-    let (simd, zero) = (x.token(), f32x4::splat(x.token(), 0.0));
-    let ((x0, x1), (y0, y1), (z0, z1)) = (x.split(), y.split(), z.split());
-    scatter_add_four([x0, y0, z0, zero], &nodes[..4], simd, rows);
-    scatter_add_four([x1, y1, z1, zero], &nodes[4..8], simd, rows);
+    let zero: f32x8<S> = SimdBase::splat(x.token(), 0.0);
+    let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
+    let (y_low, y_high) = (y.zip_low(zero), y.zip_high(zero));
+    add_two_rows(xz_low.zip_low(y_low), &nodes[..2], rows);
+    add_two_rows(xz_low.zip_high(y_low), &nodes[2..4], rows);
+    add_two_rows(xz_high.zip_low(y_high), &nodes[4..6], rows);
+    add_two_rows(xz_high.zip_high(y_high), &nodes[6..8], rows);
+}
+
+/// Adds to two rows, one after the other: they may be the same.
+#[inline(always)]
+fn add_two_rows<S: Simd>(added: f32x8<S>, nodes: &[u32], rows: &mut [[f32; 4]]) {
+    let (first, second) = added.split();
+    let row = &mut rows[nodes[0] as usize];
+    (f32x4::from_slice(first.token(), row) + first).store_slice(row);
+    let row = &mut rows[nodes[1] as usize];
+    (f32x4::from_slice(second.token(), row) + second).store_slice(row);
 }
 
 #[inline(always)]
