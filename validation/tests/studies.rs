@@ -268,10 +268,7 @@ fn released_from_impossible_shapes_tissue_comes_back() {
 fn no_stiffness_step_or_unit_breaks_a_step() {
     for tally in torture::ranges(Size::Small).unwrap() {
         assert_eq!((tally.not_numbers, tally.panics), (0, 0), "{tally:?}");
-        assert_eq!(
-            tally.made + tally.undone.iter().sum::<u32>(),
-            if tally.refused.is_some() { 0 } else { tally.tried }
-        );
+        assert_eq!(tally.made + tally.undone.len() as u32, if tally.refused.is_some() { 0 } else { tally.tried });
         if tally.method.never_gains() && tally.combination.has_energy() {
             // Roundings of the weight's energy, in steps of 0.1 ms, which move the cube by less than a millionth of its size.
             assert!(tally.gain < 1e-9, "{tally:?}");

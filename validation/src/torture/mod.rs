@@ -16,7 +16,7 @@ mod shapes;
 pub use self::combination::{Combination, Method};
 pub use self::cuts::{Cuts, End};
 pub use self::elements::ElementTally;
-pub use self::ranges::RangeTally;
+pub use self::ranges::{RangeTally, Undone};
 pub use self::refusals::Refusal;
 pub use self::release::{Outcome, Trial};
 pub use self::sameness::Sameness;

@@ -3,6 +3,7 @@
 use viscera::model::ModelKind;
 
 use super::elements::DEFORMATIONS;
+use super::ranges::Undone;
 use super::release::{DAMPING, Extent, STEP};
 use super::{Combination, Cuts, ElementTally, End, Method, Obstacle, Outcome, Shape, Torture, Trial, ranges, sameness};
 use crate::Report;
@@ -134,7 +135,7 @@ impl Torture {
             ))
             .table(methods)
             .text(
-                "Which shapes come back, in backward Euler steps, linearised and in full, and in explicit ones; held and free. \
+                "Which shapes come back, in explicit steps and in those of backward Euler, linearised and in full; held and free. \
                  M: cannot, the law is blind to reflections (take `stable-neo-hookean`, `neo-hookean`, or the model \
                  `corotational`). S: cannot by symmetry, no direction out of a point or a line is better than another. T: takes \
                  rotations for strain, and comes to rest turned. W: nodes that remember their place may have it in a twist. Where nothing of this is in the way: E, at rest in another \
@@ -181,7 +182,7 @@ impl Torture {
             };
             let conserving = of.iter().filter(|tally| tally.combination.has_energy());
             let mut row = vec![method.name.into(), sum(&|tally| tally.tried), sum(&|tally| tally.made)];
-            row.extend((0..ranges::KINDS.len()).map(|kind| sum(&|tally| tally.undone[kind])));
+            row.extend(ranges::KINDS.map(|kind| sum(&|tally| tally.undone_as(kind).count() as u32)));
             row.extend([
                 sum(&|tally| tally.not_numbers),
                 sum(&|tally| tally.panics),
@@ -204,6 +205,39 @@ impl Torture {
                 listed(steps)
             ))
             .table(table)
+            .text("Which settings are undone, how many of them, and over which of these numbers they are spread:")
+            .table(self.undone_over_ranges())
+    }
+
+    fn undone_over_ranges(&self) -> Table {
+        let mut table = Table::new(
+            "ranges-undone",
+            &["model and law", "integrator", "what is said", "settings", "E [Pa]", "ν", "step [s]"],
+        );
+        for tally in self.ranges.iter().filter(|tally| tally.refused.is_none()) {
+            for kind in ranges::KINDS {
+                let there: Vec<_> = tally.undone_as(kind).collect();
+                if there.is_empty() {
+                    continue;
+                }
+                let spread = |number: fn(&Undone) -> f64| {
+                    let mut numbers: Vec<f64> = there.iter().map(|undone| number(undone)).collect();
+                    numbers.sort_by(f64::total_cmp);
+                    numbers.dedup();
+                    listed(&numbers)
+                };
+                table.push(vec![
+                    tally.combination.name(),
+                    tally.method.name.into(),
+                    kind.into(),
+                    there.len().to_string(),
+                    spread(|undone| undone.young),
+                    spread(|undone| undone.poisson),
+                    spread(|undone| undone.step),
+                ]);
+            }
+        }
+        table
     }
 
     fn told_differently(&self, report: Report) -> Report {

@@ -29,8 +29,8 @@ pub struct RangeTally {
     pub refused: Option<&'static str>,
     /// Settings in which every step was made.
     pub made: u32,
-    /// Settings in which a step was undone, with an error that says what to do, for each of those that there are.
-    pub undone: [u32; KINDS.len()],
+    /// Settings in which a step was undone, with an error that says what to do.
+    pub undone: Vec<Undone>,
     /// Settings in which a number that is none came through.
     pub not_numbers: u32,
     /// Panics.
@@ -39,6 +39,26 @@ pub struct RangeTally {
     pub gain: f64,
     /// Where that was: E [Pa], ν, step [s], units of length in a metre.
     pub worst: (f64, f64, f64, f64),
+}
+
+impl RangeTally {
+    /// Settings undone by an error of this kind.
+    pub(super) fn undone_as(&self, kind: &str) -> impl Iterator<Item = &Undone> {
+        self.undone.iter().filter(move |undone| undone.kind == kind)
+    }
+}
+
+/// A setting in which a step was undone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undone {
+    /// What the error says, one of [`KINDS`].
+    pub(super) kind: &'static str,
+    /// E [Pa], in metres.
+    pub(super) young: f64,
+    /// ν.
+    pub(super) poisson: f64,
+    /// Length of a step [s].
+    pub(super) step: f64,
 }
 
 /// One setting.
@@ -88,7 +108,7 @@ pub(super) fn attempt(combination: Combination, method: Method, size: Size) -> R
         tried: 0,
         refused: None,
         made: 0,
-        undone: [0; KINDS.len()],
+        undone: Vec::new(),
         not_numbers: 0,
         panics: 0,
         gain: 0.0,
@@ -126,8 +146,8 @@ fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), Vali
     let rest = before[2];
     for _ in 0..STEPS {
         if let Err(error) = world.step() {
-            let kind = KINDS.iter().position(|&name| name == undone(&error)).ok_or(error)?;
-            tally.undone[kind] += 1;
+            let kind = KINDS.into_iter().find(|&name| name == undone(&error)).ok_or(error)?;
+            tally.undone.push(Undone { kind, young, poisson, step });
             return Ok(());
         }
         let now = parts(&world.observe(id));
