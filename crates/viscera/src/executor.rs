@@ -152,7 +152,7 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     merge: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
     if parts == 1 {
-        return work(first, data);
+        return part(first, data, work);
     }
     if POOL && parts <= D::FEWEST {
         return fold::<D, R, false>(first, parts, data, work, merge);
@@ -166,6 +166,12 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     };
     let (left, right) = if POOL { rayon::join(left, right) } else { (left(), right()) };
     merge(left, right)
+}
+
+/// One part. Out of line, as the loops with and without a pool would each have the whole of `work` within them otherwise.
+#[inline(never)]
+fn part<D, R>(number: usize, data: D, work: &impl Fn(usize, D) -> R) -> R {
+    work(number, data)
 }
 
 /// Arrays that can be divided between threads.
