@@ -83,6 +83,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]);
 
+    /// The same with the derivative itself, in a model whose other products leave some of it out to cost less and never be negative.
+    fn add_exact_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.add_product(x, dx, scratch, out);
+    }
+
     /// Writes S (M + K(x)) dx to `out`, with masses M scaled as stiffnesses [N/m], and gives dx·S (M + K(x)) dx: all that an iteration of an
     /// implicit step asks for. A model that goes through the nodes at the end of a product does all of it on the way.
     fn product_with_masses(
@@ -118,6 +123,11 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Whether the forces are the gradient of that energy everywhere: what a step gains of it then tells of the step.
     fn has_potential(&self) -> bool {
         true
+    }
+
+    /// Whether that energy has creases, at which the forces jump: where it is least there, they do not balance.
+    fn has_creases(&self) -> bool {
+        false
     }
 
     /// Takes cells out of the body; their force, energy and stiffness are gone for good. A cell that is out already is

@@ -38,52 +38,7 @@ impl<T: Scalar> Group<'_, T> {
     }
 }
 
-/// What a step makes least of: its slope is what the forces lack to balance.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Potential {
-    /// ½ r/Δt² (δ − δ̂)·M (δ − δ̂) + β Δt/2s v⁺·M v⁺ + V(x + δ) − R·δ [J].
-    pub(super) energy: f64,
-    /// What rounding of its terms and of the places makes of it [J].
-    pub(super) rounding: f64,
-}
-
-impl<T: Scalar> Group<'_, T> {
-    /// The potential of the step where the body is now; none where some of the forces have none.
-    pub(super) fn potential(&mut self) -> Option<Potential> {
-        if !matches!(self.together, Together::Alone(_)) || self.numbers.place != 1.0 {
-            return None;
-        }
-        let step = self.member(0);
-        let body = &step.body;
-        let meets = !body.contacts.is_empty() || !step.memory.dragged.is_empty();
-        let has_others = body.followers.is_some() || body.has_changing_forces() || body.stiffness_damping > T::ZERO;
-        (step.has_potential() && !meets && !has_others).then(|| step.potential())
-    }
-}
-
 impl<T: Scalar> Step<'_, T> {
-    fn potential(&self) -> Potential {
-        let (body, memory, state) = (&*self.body, &*self.memory, &self.body.state);
-        let elastic: f64 = state.models.iter().map(|model| model.energy(&state.positions)).sum();
-        let (mut energy, mut about) = (elastic, elastic.abs());
-        let (mut forces, mut places) = (0.0, 0.0);
-        let inertia = 0.5 * self.numbers.inertia / (self.dt * self.dt);
-        let damping = 0.5 * body.damping.to_f64() * self.dt / self.numbers.velocity;
-        for node in 0..state.positions.len() {
-            let mass = state.masses[node].to_f64();
-            let square = |v: Vec3<T>| v.cast::<f64>().squared_norm();
-            let moving = mass * inertia * square(memory.increment[node] - memory.coast[node])
-                + mass * damping * square(self.end_velocity(node));
-            let work = body.external_forces[node].cast::<f64>().dot(memory.increment[node].cast());
-            energy += moving - work;
-            about += moving + work.abs();
-            forces += square(state.internal_forces[node]);
-            places += square(state.positions[node]);
-        }
-        let rounding = T::EPSILON.to_f64() * (8.0 * (forces * places).sqrt() + 64.0 * about);
-        Potential { energy, rounding }
-    }
-
     fn has_gained(&self, share: f64) -> bool {
         let (body, memory, state) = (&*self.body, &*self.memory, &self.body.state);
         if body.followers.is_some() || !body.contacts.is_empty() || self.is_led() {
@@ -109,7 +64,7 @@ impl<T: Scalar> Step<'_, T> {
         gain > share * about + rounding
     }
 
-    fn has_potential(&self) -> bool {
+    pub(super) fn has_potential(&self) -> bool {
         self.body.state.models.iter().all(|model| model.has_potential())
     }
 

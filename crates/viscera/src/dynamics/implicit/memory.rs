@@ -68,6 +68,7 @@ impl<T: Scalar> ImplicitMemory<T> {
                 masses: vec![T::ZERO; nodes],
                 external_time: 0.0,
                 external_share: 1.0,
+                is_exact: false,
                 assembled: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, reach)),
             },
             rounding: 0.0,

@@ -29,6 +29,7 @@ mod group;
 mod memory;
 mod newmark;
 mod newton;
+mod potential;
 mod report;
 mod scheme;
 mod settings;

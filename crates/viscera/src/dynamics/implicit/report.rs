@@ -8,7 +8,8 @@ pub struct ImplicitReport {
     /// What is left of the residual: of the forces in a full step, over the forces that balance; of the linear system in a
     /// linearised one, over its right-hand side in the norm of the preconditioner.
     pub residual: f64,
-    /// Whether that is below what was asked for. A fixed number of iterations asks for nothing.
+    /// Whether that is below what was asked for, or the step has come to rest on a crease of its energy. A fixed number of iterations asks for
+    /// nothing.
     pub converged: bool,
     /// Whether a linear solve met a direction of negative curvature: tissue under strong compression.
     pub negative_curvature: bool,

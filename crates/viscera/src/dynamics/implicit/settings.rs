@@ -30,7 +30,8 @@ pub enum Newton {
         /// The residual force has to fall below this share of the forces that balance [> 0, < 1], or below what rounding
         /// of the positions makes of them.
         relative: f64,
-        /// The most iterations [≥ 1]. A step that needs more is undone and is an error.
+        /// The most iterations [≥ 1]. A step that needs more is undone and is an error, unless it has come to rest on a crease of its energy
+        /// ([`ForceModel::has_creases`](crate::model::ForceModel::has_creases)).
         at_most: u32,
     },
 }

@@ -19,6 +19,8 @@ pub(super) struct StepMatrix<T> {
     pub(super) external_share: f64,
     /// K, where it is assembled.
     pub(super) assembled: Option<BlockMatrix<T>>,
+    /// Whether products are those of the derivative of the forces itself; the assembled matrix and preconditioners know it not.
+    pub(super) is_exact: bool,
 }
 
 impl<T: Scalar> StepMatrix<T> {
@@ -39,6 +41,7 @@ pub(super) struct Tangent<'a, T: Scalar> {
     pub(super) scratch: &'a mut Scratch<T>,
     /// K, where it is assembled.
     pub(super) assembled: Option<&'a mut BlockMatrix<T>>,
+    is_exact: bool,
     /// Stiffness that the assembled matrix does not have.
     pub(super) external: ExternalStiffness<'a, T>,
     pub(super) masses: &'a [T],
@@ -55,11 +58,19 @@ impl<'a, T: Scalar> Tangent<'a, T> {
             models: &body.state.models,
             positions: &body.state.positions,
             scratch: &mut body.scratch,
-            assembled: matrix.assembled.as_mut(),
+            assembled: matrix.assembled.as_mut().filter(|_| !matrix.is_exact),
+            is_exact: matrix.is_exact,
             masses: &matrix.masses,
             contacts: (&body.contacts, 1.0 / matrix.stiffness.to_f64()),
             stages,
         }
+    }
+}
+
+impl<T: Scalar> Tangent<'_, T> {
+    /// Whether it is that of the models and masses alone, as models have it.
+    fn is_plain(&self) -> bool {
+        self.assembled.is_none() && !self.is_exact && self.contacts.0.is_empty() && self.external.is_empty()
     }
 }
 
@@ -75,7 +86,11 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         set_weighted(&self.scratch.executor, out, masses, x);
         for model in models {
             self.stages.run(Stage::Products(model.name()), || {
-                model.add_product(self.positions, x, self.scratch, out);
+                if self.is_exact {
+                    model.add_exact_product(self.positions, x, self.scratch, out);
+                } else {
+                    model.add_product(self.positions, x, self.scratch, out);
+                }
             });
         }
         self.external.add_product(self.positions, x, out);
@@ -91,7 +106,7 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         out: &mut [Vec3<T>],
     ) -> f64 {
         match self.models {
-            [model] if self.assembled.is_none() && self.contacts.0.is_empty() && self.external.is_empty() => {
+            [model] if self.is_plain() => {
                 let inertia = Inertia { masses: self.masses, filtered: *filtered };
                 self.stages.run(Stage::Products(model.name()), || {
                     model.product_with_masses(self.positions, x, &inertia, self.scratch, out)

@@ -104,20 +104,21 @@ impl<T: Scalar> CorotationalHexes<T> {
     fn element_forces<S: Simd, const PRODUCT: bool>(
         &self,
         simd: S,
+        formulation: Formulation,
         batch: &Batch<T::Lanes<S>>,
         points: &[T],
         direction: &[Vec3<T::Lanes<S>>; 8],
     ) -> [Vec3<T::Lanes<S>>; 8] {
         let Batch { hooke, place, centre, mean, r } = batch;
-        let dr = if PRODUCT { self.formulation.rotation_along(mean, r, &deformation(direction, centre)) } else { *r };
+        let dr = if PRODUCT { formulation.rotation_along(mean, r, &deformation(direction, centre)) } else { *r };
         let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
         for point in points.chunks_exact(POINT * T::LANES) {
             let gradients = load_gradients::<T, S>(simd, point);
             let f = deformation(place, &gradients);
             let stress = if PRODUCT {
-                self.formulation.stress_along(hooke, (r, &dr), (&f, &deformation(direction, &gradients)))
+                formulation.stress_along(hooke, (r, &dr), (&f, &deformation(direction, &gradients)))
             } else {
-                self.formulation.stress(hooke, r, &f)
+                formulation.stress(hooke, r, &f)
             };
             let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
             for corner in 0..8 {
@@ -132,6 +133,7 @@ impl<T: Scalar> CorotationalHexes<T> {
     fn add_with<S: Simd, const PRODUCT: bool>(
         &self,
         simd: S,
+        formulation: Formulation,
         [x, dx]: [&[[T; 4]]; 2],
         batches: Range<usize>,
         out: &mut [[T; 4]],
@@ -140,15 +142,16 @@ impl<T: Scalar> CorotationalHexes<T> {
             let nodes = self.corners.block(number);
             let batch = self.load(simd, x, nodes, self.centres.block(number), self.law.block(number));
             let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { batch.place };
-            let forces = self.element_forces::<S, PRODUCT>(simd, &batch, self.points.block(number), &direction);
+            let forces =
+                self.element_forces::<S, PRODUCT>(simd, formulation, &batch, self.points.block(number), &direction);
             self.scatter::<S>(&forces, number, out);
         }
     }
 
-    fn add<const PRODUCT: bool>(&self, scratch: &mut Scratch<T>) {
+    fn add<const PRODUCT: bool>(&self, formulation: Formulation, scratch: &mut Scratch<T>) {
         let SectionScratch { nodal, direction, mut sums, .. } = scratch.sections(self.sections.sum_rows());
         self.sections.add(&mut sums, &|batches, rows| {
-            dispatch!(dispatch_level(), simd => self.add_with::<_, PRODUCT>(simd, [nodal, direction], batches, rows));
+            dispatch!(dispatch_level(), simd => self.add_with::<_, PRODUCT>(simd, formulation, [nodal, direction], batches, rows));
         });
     }
 
@@ -171,7 +174,7 @@ impl<T: Scalar> CorotationalHexes<T> {
                 let mut columns = [batch.place; 3];
                 for axis in 0..3 {
                     let direction = unit_displacement::<T, S, 8>(simd, corner, axis);
-                    columns[axis] = self.element_forces::<S, true>(simd, &batch, points, &direction);
+                    columns[axis] = self.element_forces::<S, true>(simd, self.formulation, &batch, points, &direction);
                 }
                 add_block_column::<T, S, 8>(&columns, nodes, corner, self.corners.rows() - number * T::LANES, sink);
             }
@@ -195,7 +198,7 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
         scratch.start(x);
-        self.add::<false>(scratch);
+        self.add::<false>(self.formulation, scratch);
         scratch.finish(out);
     }
 
@@ -228,8 +231,15 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
             });
         } else {
             scratch.start(x);
-            self.add::<true>(scratch);
+            self.add::<true>(self.formulation, scratch);
         }
+        scratch.finish(out);
+    }
+
+    fn add_exact_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        scratch.start(x);
+        scratch.start_direction(dx);
+        self.add::<true>(Formulation { tangent: Tangent::Exact, ..self.formulation }, scratch);
         scratch.finish(out);
     }
 
@@ -250,6 +260,7 @@ impl<T: Scalar> ForceModel<T> for CorotationalHexes<T> {
             }
         }
     }
+
     fn has_potential(&self) -> bool {
         false
     }

@@ -139,6 +139,11 @@ impl<T: Scalar> CorotationalTets<T> {
         }
     }
 
+    /// The derivative of the forces, that of the rotations as the formulation has it.
+    fn derivative(&self) -> Derivative<'_, T> {
+        Derivative { tets: self, formulation: self.formulation }
+    }
+
     /// The numbers of one element.
     fn numbers<U: Scalar>(&self, row: usize) -> Batch<U> {
         let mut numbers = [U::ZERO; MOST];
@@ -151,8 +156,11 @@ impl<T: Scalar> CorotationalTets<T> {
 
 /// Forces.
 struct Forces<'a, T: Scalar>(&'a CorotationalTets<T>);
-/// The derivative of the forces, of the rotations too.
-struct ExactProduct<'a, T: Scalar>(&'a CorotationalTets<T>);
+/// What a formulation says of the derivative of the forces.
+struct Derivative<'a, T: Scalar> {
+    tets: &'a CorotationalTets<T>,
+    formulation: Formulation,
+}
 /// The derivative with the rotations held, from turned gradients.
 struct FrozenProduct<'a, T: Scalar> {
     tets: &'a CorotationalTets<T>,
@@ -174,10 +182,10 @@ impl<T: Scalar> Element<T, 1> for Forces<'_, T> {
     }
 }
 
-impl<T: Scalar> Element<T, 2> for ExactProduct<'_, T> {
+impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
+        let (Batch { inverse, volume, hooke }, formulation) = (self.tets.load(simd, slot), self.formulation);
         let (f, df) = (edges[0] * inverse, edges[1] * inverse);
         let r = formulation.rotation(&f);
         let dr = formulation.rotation_along(&f, &r, &df);
@@ -298,8 +306,13 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         if is_linearized {
             self.order.add([dx], &FrozenProduct { tets: self, linearization }, sums, out);
         } else {
-            self.order.add([x, dx], &ExactProduct(self), sums, out);
+            self.order.add([x, dx], &self.derivative(), sums, out);
         }
+    }
+
+    fn add_exact_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        let formulation = Formulation { tangent: Tangent::Exact, ..self.formulation };
+        self.order.add([x, dx], &Derivative { tets: self, formulation }, scratch.sums(self.sum_rows()).0, out);
     }
 
     fn product_with_masses(
@@ -316,7 +329,7 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
             let element = FrozenProduct { tets: self, linearization };
             self.order.product_with_masses([dx], &element, sums, (dx, inertia), out)
         } else {
-            self.order.product_with_masses([x, dx], &ExactProduct(self), sums, (dx, inertia), out)
+            self.order.product_with_masses([x, dx], &self.derivative(), sums, (dx, inertia), out)
         }
     }
 
@@ -342,8 +355,14 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
             self.add_blocks(x, scratch, &mut DiagonalSink(out));
         }
     }
+
     fn has_potential(&self) -> bool {
         !self.fibred && self.formulation.has_potential()
+    }
+
+    /// Where the two smallest stretches of a cell turned inside out are as large, its rotation jumps.
+    fn has_creases(&self) -> bool {
+        true
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

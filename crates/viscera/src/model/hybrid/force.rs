@@ -78,6 +78,11 @@ impl<T: Scalar> ForceModel<T> for HybridModel<T> {
         self.add_stiffness_times(|_, node| dx[node], out);
     }
 
+    fn add_exact_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.moving.add_exact_product(x, dx, scratch, out);
+        self.add_stiffness_times(|_, node| dx[node], out);
+    }
+
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         self.moving.add_blocks(x, scratch, sink);
         let boundary = self.condensation.boundary();
@@ -89,8 +94,13 @@ impl<T: Scalar> ForceModel<T> for HybridModel<T> {
             }
         }
     }
+
     fn has_potential(&self) -> bool {
         self.moving.has_potential()
+    }
+
+    fn has_creases(&self) -> bool {
+        self.moving.has_creases()
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {
