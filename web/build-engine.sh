@@ -18,14 +18,16 @@ has_target() {
     [ -d "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown/lib" ]
 }
 
-# Without relaxed operations: they are not in every browser, and round otherwise on each.
-flags="-C target-feature=+simd128"
+# Without relaxed operations: they are not in every browser, and round otherwise on each. Flags for all builds may stand in
+# CARGO_BUILD_RUSTFLAGS; RUSTFLAGS would take the place of these.
+unset RUSTFLAGS
+export CARGO_BUILD_RUSTFLAGS="-C target-feature=+simd128 ${CARGO_BUILD_RUSTFLAGS:-}"
 
 if has_target || { command -v rustup >/dev/null && rustup target add wasm32-unknown-unknown >/dev/null 2>&1 && has_target; }; then
-    RUSTFLAGS="$flags" cargo build --locked --profile web --target wasm32-unknown-unknown -p viscera-web
+    cargo build --locked --profile web --target wasm32-unknown-unknown -p viscera-web
 elif [ -n "${WEB_RUST_SRC:-}" ]; then
     # The library is built along, from its sources (the folder `library`), which have to be of the compiler's version.
-    RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" RUSTFLAGS="$flags" cargo build --locked --profile web \
+    RUSTC_BOOTSTRAP=1 __CARGO_TESTS_ONLY_SRC_ROOT="$WEB_RUST_SRC" cargo build --locked --profile web \
         --target wasm32-unknown-unknown -Zbuild-std=std,panic_abort -p viscera-web
 else
     missing "the target wasm32-unknown-unknown is not installed: \`rustup target add wasm32-unknown-unknown\`, or Debian's packages \
@@ -36,7 +38,7 @@ fi
 # The tool has to be of the library's version to the last digit. Not optimised: it runs for seconds and would be compiled for minutes.
 bindgen="$target_dir/tools/wasm-bindgen-$version"
 if [ ! -x "$bindgen/bin/wasm-bindgen" ]; then
-    RUSTFLAGS="" CARGO_TARGET_DIR="$target_dir/tools" cargo install wasm-bindgen-cli --debug --bin wasm-bindgen --version "=$version" --root "$bindgen"
+    env -u CARGO_BUILD_RUSTFLAGS CARGO_TARGET_DIR="$target_dir/tools" cargo install wasm-bindgen-cli --debug --bin wasm-bindgen --version "=$version" --root "$bindgen"
 fi
 rm -rf "$out"
 "$bindgen/bin/wasm-bindgen" --remove-name-section --target web --out-dir "$out" "$target_dir/wasm32-unknown-unknown/web/viscera_web.wasm"

@@ -152,7 +152,7 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     merge: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
     if parts == 1 {
-        return part(first, data, work);
+        return work.part(first, data);
     }
     if POOL && parts <= D::FEWEST {
         return fold::<D, R, false>(first, parts, data, work, merge);
@@ -168,11 +168,17 @@ fn fold<D: Divide, R: Send, const POOL: bool>(
     merge(left, right)
 }
 
-/// One part. Out of line, as the loops with and without a pool would each have the whole of `work` within them otherwise.
-#[inline(never)]
-fn part<D, R>(number: usize, data: D, work: &impl Fn(usize, D) -> R) -> R {
-    work(number, data)
+/// What is done with each part.
+trait Work<D, R>: Fn(usize, D) -> R {
+    /// Does it with one. Out of line, as the loops with and without a pool would each have the whole of it within them otherwise; and a method,
+    /// as those are compiled along with the closure that they are of, and functions with this file, all in one unit.
+    #[inline(never)]
+    fn part(&self, number: usize, data: D) -> R {
+        self(number, data)
+    }
 }
+
+impl<D, R, W: Fn(usize, D) -> R> Work<D, R> for W {}
 
 /// Arrays that can be divided between threads.
 pub(crate) trait Divide: Send + Sized {

@@ -23,8 +23,9 @@ const CONTENT: f64 = 0.9;
 /// correction from the masses alone, and crawled.
 const STEEP: f64 = 0.5;
 /// Iterations of Newton's method after which a step is lost. The line search then asks that its potential falls, where there is one: tissue
-/// that starts a thousand times too long, or inside out, was led about by the forces alone. And products are those of the derivative itself:
-/// with the rotations of cells held, tissue that collapses under ten times its modulus was not in balance after 100 iterations, and is after 10.
+/// that starts a thousand times too long, or inside out, was led about by the forces alone. And products are those of the derivative itself, as
+/// that is symmetric then: with the rotations of cells held, tissue that collapses under ten times its modulus was not in balance after 100
+/// iterations, and is after 40.
 const LOST: u32 = 10;
 /// The potential falls by more than this share of what its slope promises (Armijo).
 const ENOUGH: f64 = 1e-4;
@@ -112,7 +113,7 @@ impl<T: Scalar> Group<'_, T> {
                 }
             });
             let is_lost = arrived && report.newton_iterations >= LOST;
-            let stalls = is_lost && !self.went_astray;
+            let stalls = is_lost && !self.went_astray && !self.any(|step| !step.has_potential());
             self.each(|step| step.memory.matrix.is_exact = stalls);
             let solve = self.correct();
             floor = solve.rounding;
@@ -121,6 +122,7 @@ impl<T: Scalar> Group<'_, T> {
             report.negative_curvature |= solve.negative_curvature;
             balance = self.search(arrived, is_lost);
             if stalls && self.settles_on_crease(&mut settling, report.newton_iterations == at_most) {
+                report.residual = balance.lack / scale;
                 report.converged = true;
                 return report;
             }

@@ -1,4 +1,4 @@
-//! What a step of backward Euler is the least of, where its forces have a potential; and steps that end on a crease of it.
+//! What a step is the least of, where its forces have a potential and are those at its end; and steps that end on a crease of it.
 //!
 //! ½ r/Δt² (δ − δ̂)·M (δ − δ̂) + β Δt/2s v⁺·M v⁺ + V(x + δ) − R·δ
 //!
@@ -89,9 +89,11 @@ impl Settling {
 }
 
 impl<T: Scalar> Group<'_, T> {
-    /// Whether Newton's method, after one more iteration, has come to rest where the potential may have a crease.
+    /// Whether Newton's method, after one more iteration, has come to rest where the potential may have a crease. Not in schemes that go on from
+    /// the forces there: these jump, and throw tissue off the crease.
     pub(super) fn settles_on_crease(&mut self, settling: &mut Settling, is_last: bool) -> bool {
+        let may_end = !self.settings.scheme.needs_acceleration();
         let has_creases = self.member(0).body.state.models.iter().any(|model| model.has_creases());
-        has_creases && self.potential().is_some_and(|now| settling.has_settled(now, is_last))
+        may_end && has_creases && self.potential().is_some_and(|now| settling.has_settled(now, is_last))
     }
 }
