@@ -89,11 +89,9 @@ impl Settling {
 }
 
 impl<T: Scalar> Group<'_, T> {
-    /// Whether Newton's method, after one more iteration, has come to rest where the potential may have a crease. Not in schemes that go on from
-    /// the forces there: these jump, and throw tissue off the crease.
+    /// Whether Newton's method, after one more iteration, has come to rest where the potential may have a crease.
     pub(super) fn settles_on_crease(&mut self, settling: &mut Settling, is_last: bool) -> bool {
-        let may_end = !self.settings.scheme.needs_acceleration();
         let has_creases = self.member(0).body.state.models.iter().any(|model| model.has_creases());
-        may_end && has_creases && self.potential().is_some_and(|now| settling.has_settled(now, is_last))
+        has_creases && self.potential().is_some_and(|now| settling.has_settled(now, is_last))
     }
 }
