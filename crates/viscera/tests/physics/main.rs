@@ -22,6 +22,7 @@ mod model_invariance;
 mod model_lanes;
 mod model_refusal;
 mod model_removal;
+mod model_slivers;
 mod reference_compressible;
 mod reference_corotational_beam;
 mod reference_patch;

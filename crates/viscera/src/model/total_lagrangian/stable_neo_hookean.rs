@@ -31,6 +31,12 @@ fn metric<R: Real>(c: &[R]) -> Sym3<R> {
     Sym3 { xx: c[0], yy: c[1], zz: c[2], xy: c[3], xz: c[4], yz: c[5] }
 }
 
+/// I_C = A0:DᵀD, which rounding makes negative in slivers: the energy of some was no number in single precision.
+#[inline(always)]
+fn not_negative<R: Real>(invariant: R) -> R {
+    invariant.max(invariant.like(0.0))
+}
+
 /// V [λ' (J − 1) − ¾μ'] / det Dm.
 #[inline(always)]
 fn pressure<R: Real>(c: &[R], determinant: R) -> R {
@@ -61,7 +67,7 @@ impl TetKernel for StableNeoHookeanMetric {
     fn diagonal<R: Real>(c: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
         let (a0, one) = (metric(c), c[0].like(1.0));
         let stretched = *d * a0;
-        let share = one / (stretched.contract(*d) + one);
+        let share = one / (not_negative(stretched.contract(*d)) + one);
         let (own, areas) = (columns_at_corners(&stretched), columns_at_corners(&d.cofactor()));
         let (metrics, volume) = (at_corners(a0), over_squared_determinant(c));
         let mut blocks = [a0; 4];
@@ -76,7 +82,7 @@ impl TetKernel for StableNeoHookeanMetric {
     #[inline(always)]
     fn energy<R: Real>(c: &[R], d: &Mat3<R>) -> R {
         let one = c[0].like(1.0);
-        let excess = metric(c).contract(d.gram()) - one.like(3.0);
+        let excess = not_negative(metric(c).contract(d.gram())) - one.like(3.0);
         let change = d.determinant().mul_add(c[6], one.like(-1.0));
         let logarithm = excess.mul_add(one.like(0.25), one).ln();
         let shape = (excess - logarithm).half() - change * one.like(0.75);
@@ -87,7 +93,7 @@ impl TetKernel for StableNeoHookeanMetric {
     fn forces<R: Real>(c: &[R], d: &Mat3<R>) -> Mat3<R> {
         let (a0, one) = (metric(c), c[0].like(1.0));
         let (cofactor, stretched) = (d.cofactor(), *d * a0);
-        let shape = c[8] * (one - one / (stretched.contract(*d) + one));
+        let shape = c[8] * (one - one / (not_negative(stretched.contract(*d)) + one));
         let pressure = pressure(c, d.columns[0].dot(cofactor.columns[0]));
         stretched * shape + cofactor * pressure
     }
@@ -97,7 +103,7 @@ impl TetKernel for StableNeoHookeanMetric {
     fn product<R: Real>(c: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
         let (a0, one) = (metric(c), c[0].like(1.0));
         let cofactor = d.cofactor();
-        let share = one / (a0.contract(d.gram()) + one);
+        let share = one / (not_negative(a0.contract(d.gram())) + one);
         let stretched = *d * a0;
         let d_shape = (c[8] * share.squared() * stretched.contract(*dd)).double();
         let d_pressure = over_squared_determinant(c) * cofactor.contract(*dd);
