@@ -4,9 +4,10 @@ use std::fmt::{Display, LowerExp};
 use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, f32x4, f32x8, f64x4};
+use fearless_simd::{Level, Simd, f32x8, f64x4};
 
 use super::Real;
+use super::rows::{add_doubles, add_singles, gather_doubles, gather_singles};
 
 /// A floating-point number that a world can be simulated in: `f32` for play, `f64` for statics and validation.
 pub trait Scalar: Real<Mask = bool> + PartialOrd + Default + Display + LowerExp + 'static {
@@ -48,34 +49,6 @@ pub trait Lanes<T: Scalar, S: Simd>: Real {
     /// Adds three numbers per lane, lane `i` to the first three of `rows[nodes[i]]`, lane after lane: lanes may name the
     /// same row.
     fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[T; 4]]);
-}
-
-/// Transposes a 4×4 block that lies in four vectors of four lanes.
-#[inline(always)]
-fn transpose<S: Simd, V: SimdBase<S>>([a, b, c, d]: [V; 4]) -> [V; 4] {
-    let (ac_low, bd_low) = (a.zip_low(c), b.zip_low(d));
-    let (ac_high, bd_high) = (a.zip_high(c), b.zip_high(d));
-    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
-}
-
-/// Loads four rows and gives their columns.
-#[inline(always)]
-fn gather_four<T: Copy, S: Simd, V: SimdBase<S, Element = T>>(simd: S, rows: &[[T; 4]], nodes: &[u32]) -> [V; 4] {
-    let row = |lane: usize| V::from_slice(simd, &rows[nodes[lane] as usize]);
-    transpose([row(0), row(1), row(2), row(3)])
-}
-
-/// Adds the transpose of four columns to four rows, row after row.
-#[inline(always)]
-fn scatter_add_four<T: Copy, S: Simd, V>(columns: [V; 4], nodes: &[u32], simd: S, rows: &mut [[T; 4]])
-where
-    V: SimdBase<S, Element = T> + std::ops::Add<Output = V>,
-{
-    let added = transpose(columns);
-    for lane in 0..4 {
-        let row = &mut rows[nodes[lane] as usize];
-        (V::from_slice(simd, row) + added[lane]).store_slice(row);
-    }
 }
 
 macro_rules! impl_lanes {
@@ -183,51 +156,8 @@ macro_rules! impl_lanes {
     };
 }
 
-impl_lanes!(f32, f32x8, 8, "f32", gather_eight_singles, scatter_add_eight_singles);
-impl_lanes!(f64, f64x4, 4, "f64", gather_four, scatter_add_four_doubles);
-
-#[inline(always)]
-fn gather_eight_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> [f32x8<S>; 4] {
-    let (a, b) = (two_rows(simd, rows, &nodes[..2]), two_rows(simd, rows, &nodes[2..4]));
-    let (c, d) = (two_rows(simd, rows, &nodes[4..6]), two_rows(simd, rows, &nodes[6..8]));
-    let (xz_low, yw_low) = (a.unzip_low(b), a.unzip_high(b));
-    let (xz_high, yw_high) = (c.unzip_low(d), c.unzip_high(d));
-    [xz_low.unzip_low(xz_high), yw_low.unzip_low(yw_high), xz_low.unzip_high(xz_high), yw_low.unzip_high(yw_high)]
-}
-
-/// Two rows, one after the other.
-#[inline(always)]
-fn two_rows<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> f32x8<S> {
-    let first = f32x4::from_slice(simd, &rows[nodes[0] as usize]);
-    first.combine(f32x4::from_slice(simd, &rows[nodes[1] as usize]))
-}
-
-#[inline(always)]
-fn scatter_add_eight_singles<S: Simd>([x, y, z]: [f32x8<S>; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
-    let zero: f32x8<S> = SimdBase::splat(x.token(), 0.0);
-    let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
-    let (y_low, y_high) = (y.zip_low(zero), y.zip_high(zero));
-    add_two_rows(xz_low.zip_low(y_low), &nodes[..2], rows);
-    add_two_rows(xz_low.zip_high(y_low), &nodes[2..4], rows);
-    add_two_rows(xz_high.zip_low(y_high), &nodes[4..6], rows);
-    add_two_rows(xz_high.zip_high(y_high), &nodes[6..8], rows);
-}
-
-/// Adds to two rows, one after the other: they may be the same.
-#[inline(always)]
-fn add_two_rows<S: Simd>(added: f32x8<S>, nodes: &[u32], rows: &mut [[f32; 4]]) {
-    let (first, second) = added.split();
-    let row = &mut rows[nodes[0] as usize];
-    (f32x4::from_slice(first.token(), row) + first).store_slice(row);
-    let row = &mut rows[nodes[1] as usize];
-    (f32x4::from_slice(second.token(), row) + second).store_slice(row);
-}
-
-#[inline(always)]
-fn scatter_add_four_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
-    let simd = x.token();
-    scatter_add_four([x, y, z, SimdBase::splat(simd, 0.0)], &nodes[..4], simd, rows);
-}
+impl_lanes!(f32, f32x8, 8, "f32", gather_singles, add_singles);
+impl_lanes!(f64, f64x4, 4, "f64", gather_doubles, add_doubles);
 
 thread_local! {
     static ASKED: Cell<Option<Level>> = const { Cell::new(None) };

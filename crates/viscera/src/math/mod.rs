@@ -5,6 +5,7 @@ mod lanes;
 mod mat3;
 mod real;
 pub mod rotation;
+mod rows;
 mod sym3;
 mod vec3;
 
