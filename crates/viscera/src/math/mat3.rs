@@ -67,6 +67,12 @@ impl<R: Real> Mat3<R> {
         let cofactor = self.cofactor();
         cofactor.transpose() * (self.columns[0].x.like(1.0) / self.columns[0].dot(cofactor.columns[0]))
     }
+    /// A · factor + addend, fused.
+    #[inline(always)]
+    pub fn mul_add(self, factor: R, addend: Self) -> Self {
+        let ([a, b, c], [d, e, f]) = (self.columns, addend.columns);
+        Self::from_columns(a.mul_add(factor, d), b.mul_add(factor, e), c.mul_add(factor, f))
+    }
     /// A:B = Σ A_ij B_ij.
     #[inline(always)]
     pub fn contract(self, other: Self) -> R {

@@ -95,7 +95,7 @@ impl TetKernel for StableNeoHookeanMetric {
         let (cofactor, stretched) = (d.cofactor(), *d * a0);
         let shape = c[8] * (one - one / (not_negative(stretched.contract(*d)) + one));
         let pressure = pressure(c, d.columns[0].dot(cofactor.columns[0]));
-        stretched * shape + cofactor * pressure
+        cofactor.mul_add(pressure, stretched * shape)
     }
 
     // dI_C = 2 A0:DᵀdD
