@@ -23,16 +23,15 @@ impl<T: Scalar> SimulatedBody<T> {
         if self.state.forces_are_current && self.is_linearized {
             return;
         }
-        self.is_linearized = false;
-        self.linearize(stages);
         let state = &mut self.state;
         state.internal_forces.fill(Vec3::ZERO);
         for model in &state.models {
-            stages.run(Stage::Forces(model.name()), || {
-                model.add_forces_linearized(&state.positions, &mut self.scratch, &mut state.internal_forces);
+            let keeps = model.linearization_len() > 0;
+            stages.run(if keeps { Stage::Linearisation } else { Stage::Forces(model.name()) }, || {
+                model.linearize_and_add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
             });
         }
-        state.forces_are_current = true;
+        (state.forces_are_current, self.is_linearized) = (true, true);
     }
 
     /// Prepares the models for products at the positions, once for all of them.

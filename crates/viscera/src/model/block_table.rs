@@ -65,6 +65,12 @@ impl<V: Copy> BlockTable<V> {
         &self.values[number * size..(number + 1) * size]
     }
 
+    #[inline(always)]
+    pub(crate) fn block_of(&self, lanes: usize, columns: usize, number: usize) -> &[V] {
+        let size = lanes * columns;
+        &self.values[number * size..][..size]
+    }
+
     /// Blocks of `lanes · columns` entries.
     #[inline(always)]
     pub(crate) fn blocks(&self) -> std::slice::ChunksExact<'_, V> {

@@ -45,7 +45,7 @@ pub use volume_penalty::VolumePenalty;
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::solver::{Filtered, dot, set_weighted};
+use crate::solver::Turn;
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
 ///
@@ -75,8 +75,9 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
         0
     }
 
-    /// [`ForceModel::add_forces`] at the `x` of the last [`ForceModel::linearize`], for models that know most of it then.
-    fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+    /// [`ForceModel::linearize`] and [`ForceModel::add_forces`] together, for models to which that is less work than one after the other.
+    fn linearize_and_add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.linearize(x, scratch);
         self.add_forces(x, scratch, out);
     }
 
@@ -88,20 +89,17 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
         self.add_product(x, dx, scratch, out);
     }
 
-    /// Writes S (M + K(x)) dx to `out`, with masses M scaled as stiffnesses [N/m], and gives dx·S (M + K(x)) dx: all that an iteration of an
-    /// implicit step asks for. A model that goes through the nodes at the end of a product does all of it on the way.
-    fn product_with_masses(
+    /// Sums (M + K(x)) p on copies of the nodes in `scratch`, with `masses` M scaled as stiffnesses [N/m] and the direction p that `turn` is on its
+    /// way to; says where the copies are, and gives p·(M + K(x)) p. Directions follow one another: a model keeps the last one with the copies.
+    /// None, and nothing is done, in a model that knows no copies.
+    fn sum_product(
         &self,
-        x: &[Vec3<T>],
-        dx: &[Vec3<T>],
-        inertia: &Inertia<'_, T>,
-        scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        set_weighted(&scratch.executor, out, inertia.masses, dx);
-        self.add_product(x, dx, scratch, out);
-        inertia.filtered.apply(0, out);
-        dot(&scratch.executor, dx, out)
+        _x: &[Vec3<T>],
+        _turn: &Turn<'_, T>,
+        _masses: &[T],
+        _scratch: &mut Scratch<T>,
+    ) -> Option<(&Patches, f64)> {
+        None
     }
 
     /// Gives K(x) [N/m] to `sink`, block by block; blocks of the same two nodes add up.
@@ -159,15 +157,6 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// A copy, for snapshots: a cut changes the model.
     fn clone_box(&self) -> Box<dyn ForceModel<T>>;
-}
-
-/// Masses on the diagonal of a system, and where the system decides.
-#[derive(Clone, Copy, Debug)]
-pub struct Inertia<'a, T> {
-    /// M, one for each node, over the factor of the stiffness [N/m].
-    pub masses: &'a [T],
-    /// S.
-    pub filtered: Filtered<'a, T>,
 }
 
 /// Forces between two places that account for the energy between them.
@@ -234,12 +223,29 @@ impl<T: Scalar> Scratch<T> {
         patches.write_up(&self.executor, &self.sums, out);
     }
 
+    /// Adds them to `out`.
+    pub(crate) fn add_sums(&self, patches: &Patches, out: &mut [Vec3<T>]) {
+        patches.add_up(&self.executor, &self.sums, out);
+    }
+
+    /// Writes those of a block of nodes.
+    pub(crate) fn write_sums_of_block(&self, patches: &Patches, block: usize, out: &mut [Vec3<T>]) {
+        patches.write_up_block(block, &self.sums, out);
+    }
+
     /// `len` rows to sum in, and beside them what was kept for products; scratch made for the body's models has the room already.
     pub(crate) fn sums(&mut self, len: usize) -> (Sums<'_, T>, &[T]) {
+        let (sums, linearization) = self.sums_and_linearization(len, self.linearization.len());
+        (sums, linearization)
+    }
+
+    /// The same with room for `kept` numbers that products will need.
+    pub(crate) fn sums_and_linearization(&mut self, len: usize, kept: usize) -> (Sums<'_, T>, &mut [T]) {
         if self.sums.len() < len {
             self.sums.resize(len, [T::ZERO; 4]);
         }
-        (Sums { executor: &self.executor, rows: &mut self.sums[..len] }, &self.linearization)
+        self.linearization.resize(kept, T::ZERO);
+        (Sums { executor: &self.executor, rows: &mut self.sums[..len] }, &mut self.linearization)
     }
 
     /// What loops in sections read, with `len` rows to sum in on the way to the forces; scratch made for the body's models has the

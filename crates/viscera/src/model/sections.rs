@@ -58,7 +58,7 @@ impl Sections {
 
     /// Rows that the loop sums in.
     pub(crate) fn sum_rows(&self) -> usize {
-        self.copies.copies()
+        self.copies.rows()
     }
 
     /// The rows of the nodes in `entries` of the table, among the copies of their section.

@@ -8,9 +8,10 @@ use fearless_simd::Simd;
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
-use super::{BlockSink, Inertia, ModelError, Scratch};
+use super::{BlockSink, ModelError, Scratch};
 use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
+use crate::solver::Turn;
 
 /// The most constants that a kernel may keep for an element.
 pub(crate) const MAX_CONSTANTS: usize = 24;
@@ -162,7 +163,7 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
     /// The constants of the tetrahedra of a slot.
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
-        let block = self.constants.block(slot);
+        let block = self.constants.block_of(T::LANES, K::CONSTANTS, slot);
         let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
         for column in 0..K::CONSTANTS {
             constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
@@ -253,16 +254,14 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         self.order.add([x, dx], &Product(self), scratch.sums(self.sum_rows()).0, out);
     }
 
-    pub(crate) fn product_with_masses(
+    pub(crate) fn sum_product(
         &self,
         x: &[Vec3<T>],
-        dx: &[Vec3<T>],
-        inertia: &Inertia<'_, T>,
+        turn: &Turn<'_, T>,
+        masses: &[T],
         scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        let sums = scratch.sums(self.sum_rows()).0;
-        self.order.product_with_masses([x, dx], &Product(self), sums, (dx, inertia), out)
+    ) -> (&Patches, f64) {
+        self.order.sum_product(x, (turn, masses), &Product(self), scratch.sums(self.sum_rows()).0)
     }
 
     pub(crate) fn add_mean_forces(

@@ -1,7 +1,7 @@
 use fearless_simd::dispatch;
 
 use super::vectors::{combine_into, dot_of};
-use super::{Filter, LinearOperator, Preconditioner, Size, Stride};
+use super::{Filter, LinearOperator, Preconditioner, Size, Start, Stride};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
 use crate::solver::BlockSink;
@@ -110,22 +110,42 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
         Size { corrected: square, squared_norm: square }
     }
 
-    fn stride(
-        &mut self,
-        _matrix: &mut dyn LinearOperator<T>,
-        _filters: &[Filter<T>],
-        stride: Stride<'_, T>,
-        executor: &Executor,
-    ) -> Size {
-        let Stride { length, direction, x, residual, product } = stride;
-        let (this, blocks) = (&*self, node_blocks(residual.len()));
-        let data = ((NodeBlocks(x), NodeBlocks(residual)), (NodeBlocks(product), ReadBlocks(direction)));
-        let work = |block, ((NodeBlocks(x), NodeBlocks(r)), (NodeBlocks(q), ReadBlocks(p))): Striding<'_, T>| {
-            dispatch!(dispatch_level(), _simd => {
+    fn start(&mut self, matrix: &mut dyn LinearOperator<T>, start: Start<'_, T>, executor: &Executor) -> (Size, f64) {
+        let Start { rhs, direction, product, residual, filtered } = start;
+        let (this, matrix, blocks) = (&*self, &*matrix, node_blocks(rhs.len()));
+        let data = ((NodeBlocks(residual), ReadBlocks(rhs)), (NodeBlocks(product), NodeBlocks(direction)));
+        let work = |block, ((NodeBlocks(r), ReadBlocks(b)), (NodeBlocks(q), NodeBlocks(p))): Starting<'_, T>| {
+            matrix.finish(block, p, q, &filtered);
+            r.copy_from_slice(b);
+            filtered.apply(block * NODE_BLOCK, r);
+            let squares = dispatch!(dispatch_level(), _simd => {
+                // The direction means nothing before the first turn.
+                let of_rhs = this.apply_to_block(block, r, p);
+                let of_product = this.apply_to_block(block, q, p);
+                combine_into(r, T::ONE, -T::ONE, q);
+                [of_rhs, of_product, this.apply_to_block(block, r, q)]
+            });
+            filtered.apply(block * NODE_BLOCK, q);
+            squares
+        };
+        let squares = executor.fold(blocks, data, &work, &|a, b| std::array::from_fn(|i| a[i] + b[i]));
+        let [of_rhs, of_product, square] = squares.unwrap_or_default();
+        (Size { corrected: square, squared_norm: square }, of_rhs.sqrt() + of_product.sqrt())
+    }
+
+    fn stride(&mut self, matrix: &mut dyn LinearOperator<T>, stride: Stride<'_, T>, executor: &Executor) -> Size {
+        let Stride { length, direction, x, residual, product, filtered } = stride;
+        let (this, matrix, blocks) = (&*self, &*matrix, node_blocks(residual.len()));
+        let data = ((NodeBlocks(x), NodeBlocks(residual)), (NodeBlocks(product), NodeBlocks(direction)));
+        let work = |block, ((NodeBlocks(x), NodeBlocks(r)), (NodeBlocks(q), NodeBlocks(p))): Striding<'_, T>| {
+            matrix.finish(block, p, q, &filtered);
+            let square = dispatch!(dispatch_level(), _simd => {
                 combine_into(x, T::ONE, length, p);
                 combine_into(r, T::ONE, -length, q);
                 this.apply_to_block(block, r, q)
-            })
+            });
+            filtered.apply(block * NODE_BLOCK, q);
+            square
         };
         let square = executor.fold(blocks, data, &work, &|a, b| a + b).unwrap_or(0.0);
         Size { corrected: square, squared_norm: square }
@@ -140,9 +160,13 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
     }
 }
 
+/// r, b, q and p of a [`Start`].
+type Starting<'a, T> =
+    ((NodeBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>));
+
 /// x, r, q and p of a [`Stride`].
 type Striding<'a, T> =
-    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>));
+    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>));
 
 /// S (`block` + `mass` I)⁻¹ S, or S / `mass` where there is no positive definite inverse.
 fn inverse<T: Scalar>(block: &Mat3<T>, mass: T, filter: &Filter<T>) -> Sym3<T> {

@@ -6,9 +6,8 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::vectors::filter_and_add;
-use super::{Filter, Filtered, LinearOperator, Preconditioner, Stride};
-use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
+use super::{Filter, Filtered, LinearOperator, Preconditioner, Size, Start, Stride, Turn};
+use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 
 /// When the iteration ends.
@@ -130,12 +129,10 @@ impl<T: Scalar> ConjugateGradient<T> {
         self.filtered.clear();
         let nodes = problem.filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free);
         self.filtered.extend(nodes.map(|(node, _)| node as u32));
-        let scale = self.start(matrix, preconditioner, problem, x);
-        let mut size = preconditioner.apply(matrix, problem.filters, &self.residual, &mut self.product, executor);
-        Filtered { nodes: &self.filtered, filters: problem.filters }.apply(0, &mut self.product);
-        self.direction.copy_from_slice(&self.product);
+        let (mut size, scale) = self.start(matrix, preconditioner, problem, x);
         let goal = stop.relative() * scale;
         self.note(size.squared_norm, scale);
+        let mut weight = None;
         let mut ending = Ending::Exhausted;
         let mut iterations = 0;
         let at_most = stop.at_most().min((self.history.capacity() as u32).saturating_sub(1));
@@ -144,22 +141,21 @@ impl<T: Scalar> ConjugateGradient<T> {
                 ending = Ending::Converged;
                 break;
             }
-            let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
-            let curvature = matrix.apply_along(&self.direction, &filtered, executor, &mut self.product);
+            let Self { residual, direction, product, filtered, .. } = &mut *self;
+            let filtered = Filtered { nodes: filtered, filters: problem.filters };
+            let curvature = matrix.apply_along(Turn { weight, direction, product, filtered }, executor);
             iterations += 1;
             if curvature.is_nan() || curvature <= 0.0 {
                 if iterations == 1 {
-                    self.step_against_masses(problem, size.corrected, x);
+                    self.step_against_masses(matrix, problem, size.corrected, x);
                 }
                 ending = Ending::NegativeCurvature;
                 break;
             }
-            let (residual, product) = (&mut self.residual[..], &mut self.product[..]);
             let length = T::from_f64(size.corrected / curvature);
-            let stride = Stride { length, direction: &self.direction, x, residual, product };
-            let next = preconditioner.stride(matrix, problem.filters, stride, executor);
-            let weight = T::from_f64(next.corrected / size.corrected);
-            filter_and_add(executor, &mut self.direction, weight, &mut self.product, &filtered);
+            let stride = Stride { length, direction, x, residual, product, filtered };
+            let next = preconditioner.stride(matrix, stride, executor);
+            weight = Some(T::from_f64(next.corrected / size.corrected));
             size = next;
             self.note(size.squared_norm, scale);
         }
@@ -169,36 +165,39 @@ impl<T: Scalar> ConjugateGradient<T> {
         SolveReport { iterations, residual: self.history.last().copied().unwrap_or(0.0), ending }
     }
 
-    /// Puts x to S·guess + (I − S) z and the residual to S (b − A x); gives the scale of residuals.
+    /// Puts x to S·guess + (I − S) z and the residual to S (b − A x); gives its size and the scale of residuals.
     fn start(
         &mut self,
         matrix: &mut impl LinearOperator<T>,
-        preconditioner: &impl Preconditioner<T>,
+        preconditioner: &mut impl Preconditioner<T>,
         problem: &Problem<'_, T>,
         x: &mut [Vec3<T>],
-    ) -> f64 {
-        let parts = node_blocks(x.len());
+    ) -> (Size, f64) {
         let executor = problem.executor;
-        executor.each(parts, NodeBlocks(x), &|block, NodeBlocks(x)| {
+        let data = (NodeBlocks(x), NodeBlocks(&mut self.product));
+        executor.each(node_blocks(data.0.0.len()), data, &|block, (NodeBlocks(x), NodeBlocks(product))| {
             let nodes = block * NODE_BLOCK..;
             let known = problem.filters[nodes.clone()].iter().zip(&problem.prescribed[nodes]);
             x.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
+            product.copy_from_slice(x);
         });
-        let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
-        matrix.apply_along(x, &filtered, executor, &mut self.product);
-        self.residual.copy_from_slice(problem.rhs);
-        filtered.apply(0, &mut self.residual);
-        let of_rhs = preconditioner.squared_norm(&self.residual, executor);
-        let of_product = preconditioner.squared_norm(&self.product, executor);
-        let data = (NodeBlocks(&mut self.residual), ReadBlocks(&self.product));
-        executor.each(parts, data, &|_, (NodeBlocks(r), ReadBlocks(product))| {
-            r.iter_mut().zip(product).for_each(|(r, &product)| *r -= product);
-        });
-        of_rhs.sqrt() + of_product.sqrt()
+        let Self { residual, direction, product, filtered, .. } = self;
+        let filtered = Filtered { nodes: filtered, filters: problem.filters };
+        matrix.apply_along(Turn { weight: None, direction, product, filtered }, executor);
+        preconditioner.start(matrix, Start { rhs: problem.rhs, direction, product, residual, filtered }, executor)
     }
 
     /// x + p ρ/(p·M p): the step along the first direction if the masses were the whole matrix.
-    fn step_against_masses(&mut self, problem: &Problem<'_, T>, rho: f64, x: &mut [Vec3<T>]) {
+    fn step_against_masses(
+        &mut self,
+        matrix: &impl LinearOperator<T>,
+        problem: &Problem<'_, T>,
+        rho: f64,
+        x: &mut [Vec3<T>],
+    ) {
+        let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
+        let blocks = self.direction.chunks_mut(NODE_BLOCK).zip(self.product.chunks_mut(NODE_BLOCK));
+        blocks.enumerate().for_each(|(block, (p, q))| matrix.finish(block, p, q, &filtered));
         let along = self.direction.iter().zip(problem.masses);
         let inertia: f64 = along.map(|(p, &mass)| (p.squared_norm() * mass).to_f64()).sum();
         if inertia > 0.0 {

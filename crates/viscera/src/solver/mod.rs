@@ -17,6 +17,7 @@ mod placed_ties;
 mod preconditioner;
 mod system;
 mod ties;
+mod turn;
 mod vectors;
 
 pub use block_jacobi::BlockJacobi;
@@ -31,30 +32,35 @@ pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
 pub use multigrid::{Cycle, Multigrid};
 pub(crate) use placed_ties::PlacedTies;
-pub use preconditioner::{Preconditioner, Size, Stride};
+pub use preconditioner::{Preconditioner, Size, Start, Stride};
 pub use system::System;
 pub(crate) use ties::{Tie, TieEquations};
-pub(crate) use vectors::{add_weighted, dot, dot_of, set_weighted};
+pub use turn::Turn;
+pub(crate) use turn::turn_block;
+pub(crate) use vectors::{add_weighted, dot, dot_of_rows, set_weighted};
 
 use crate::executor::Executor;
+#[cfg(doc)]
+use crate::executor::NODE_BLOCK;
 use crate::math::{Scalar, Vec3};
 
 /// A symmetric matrix that is known by what it does to a vector.
-pub trait LinearOperator<T: Scalar> {
+pub trait LinearOperator<T: Scalar>: Sync {
     /// Writes A x to `out`.
     fn apply(&mut self, x: &[Vec3<T>], out: &mut [Vec3<T>]);
 
-    /// Writes S A x to `out` and gives x·S A x: what an iteration of the conjugate gradient asks for. An operator that goes through the nodes
-    /// at its end does all three on the way.
-    fn apply_along(
-        &mut self,
-        x: &[Vec3<T>],
-        filtered: &Filtered<'_, T>,
-        executor: &Executor,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        self.apply(x, out);
-        filtered.apply(0, out);
-        dot(executor, x, out)
+    /// Turns the direction and multiplies by it; gives p·S A p. What is done node by node at either end may be left to
+    /// [`LinearOperator::finish`], which goes through the nodes anyway: an iteration of the conjugate gradient then goes through them once.
+    fn apply_along(&mut self, mut turn: Turn<'_, T>, executor: &Executor) -> f64 {
+        turn.make(executor);
+        let Turn { direction, product, filtered, .. } = turn;
+        self.apply(direction, product);
+        filtered.apply(0, product);
+        dot(executor, direction, product)
+    }
+
+    /// Does on a block of nodes, as [`NODE_BLOCK`] divides them, what the last [`LinearOperator::apply_along`] left to be done. Whoever looks
+    /// at direction and product next does so once on each block.
+    fn finish(&self, _block: usize, _direction: &mut [Vec3<T>], _product: &mut [Vec3<T>], _filtered: &Filtered<'_, T>) {
     }
 }

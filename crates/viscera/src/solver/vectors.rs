@@ -3,11 +3,10 @@
 //! The compiler makes whole registers of plain loops; of sums only where it need not keep their order, so that those are kept
 //! for eight nodes apart.
 
-use fearless_simd::dispatch;
+use fearless_simd::{Simd, dispatch};
 
-use super::Filtered;
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Real, Scalar, Vec3, dispatch_level};
 
 /// Nodes at a time, and their numbers.
 const NODES: usize = 8;
@@ -41,21 +40,6 @@ pub(crate) fn step_along<T: Scalar>(
 type Pairs<'a, T> =
     ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (ReadBlocks<'a, Vec3<T>>, ReadBlocks<'a, Vec3<T>>));
 
-/// x ← S x, and y ← s y + x.
-pub(crate) fn filter_and_add<T: Scalar>(
-    executor: &Executor,
-    y: &mut [Vec3<T>],
-    s: T,
-    x: &mut [Vec3<T>],
-    filtered: &Filtered<'_, T>,
-) {
-    let work = |block: usize, (NodeBlocks(y), NodeBlocks(x)): (NodeBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| {
-        filtered.apply(block * NODE_BLOCK, x);
-        dispatch!(dispatch_level(), _simd => combine_into(y, s, T::ONE, x));
-    };
-    executor.each(node_blocks(x.len()), (NodeBlocks(y), NodeBlocks(x)), &work);
-}
-
 /// y ← m x, with a number m for each node.
 pub(crate) fn set_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m: &[T], x: &[Vec3<T>]) {
     let work = |block: usize, (NodeBlocks(y), ReadBlocks(x)): (NodeBlocks<'_, Vec3<T>>, ReadBlocks<'_, Vec3<T>>)| {
@@ -76,7 +60,7 @@ pub(crate) fn add_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m:
 
 /// a·b over a block of nodes.
 #[inline(always)]
-pub(crate) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
+pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
     let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<NODES>(), b.as_chunks::<NODES>());
     let mut sums = [T::ZERO; NUMBERS];
     for (a, b) in a.iter().zip(b) {
@@ -87,6 +71,25 @@ pub(crate) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
     }
     let rest: f64 = rest_of_a.iter().zip(rest_of_b).map(|(&a, &b)| a.dot(b).to_f64()).sum();
     sums.into_iter().fold(rest, |sum, number| sum + number.to_f64())
+}
+
+/// The same of rows of four numbers.
+#[inline(always)]
+pub(crate) fn dot_of_rows<T: Scalar, S: Simd>(simd: S, a: &[[T; 4]], b: &[[T; 4]]) -> f64 {
+    const SUMS: usize = 4;
+    let (mut a, mut b) =
+        (a.as_flattened().chunks_exact(SUMS * T::LANES), b.as_flattened().chunks_exact(SUMS * T::LANES));
+    let mut sums = [T::Lanes::<S>::splat(simd, T::ZERO); SUMS];
+    for (a, b) in a.by_ref().zip(b.by_ref()) {
+        for i in 0..SUMS {
+            let (a, b) = (T::Lanes::<S>::load(simd, &a[i * T::LANES..]), T::Lanes::<S>::load(simd, &b[i * T::LANES..]));
+            sums[i] = a.mul_add(b, sums[i]);
+        }
+    }
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(&a, &b)| (a * b).to_f64()).sum();
+    let mut numbers = [T::ZERO; MAX_LANES];
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])).store(&mut numbers);
+    numbers.into_iter().fold(rest, |sum, number| sum + number.to_f64())
 }
 
 /// y ← s y + t x.

@@ -136,11 +136,12 @@ fn linearised_steps_from_a_thousand_times_the_length_gain_no_energy() {
 }
 
 /// Where a linearised step goes astray and its full equations have no solution near by either, it is made again in parts, and gains no
-/// energy: plain neo-Hookean tissue, let go at a thousand times its length, rose to 1e14 times the energy at the start.
+/// energy: plain neo-Hookean tissue, let go at a thousand times its length, rose to 1e14 times the energy at the start. One length of ten needs
+/// parts; which, rounding decides.
 #[test]
 fn steps_that_throw_tissue_across_a_hump_are_made_in_parts() {
     let mut again = 0;
-    for length in [300.0, 500.0, 800.0, 1000.0, 1300.0, 2000.0] {
+    for length in (0..60).map(|number| 100.0 * 1.06_f64.powi(number)) {
         let mesh = TetMesh::box_grid([2; 3], [0.1; 3]);
         let body = Body::new(mesh, 1000.0).model(TotalLagrangian::new(neo_hookean())).damping(50.0);
         let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, Implicit::default(), body);
@@ -155,7 +156,7 @@ fn steps_that_throw_tissue_across_a_hump_are_made_in_parts() {
     assert!(again > 0);
 }
 
-/// A corner let go from a thousand sizes behind the other side, or more, in steps of 20 s: where rounding wills it, in one case of ten, the
+/// A corner let go from a thousand sizes behind the other side, or more, in steps of 20 s: where rounding wills it, in one case of twenty, the
 /// solution that is found gains energy, in 64 parts too. Such a step is undone, and says so.
 #[test]
 fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
@@ -166,7 +167,7 @@ fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
         ..Implicit::accurate(Scheme::BackwardEuler)
     };
     let mut said = 0;
-    for depth in (0..40).map(|number| 100.0 * 1.05_f64.powi(number)) {
+    for depth in (0..120).map(|number| 100.0 * 1.02_f64.powi(number)) {
         let body = Body::new(tetrahedra(), 1000.0).model(TotalLagrangian::new(neo_hookean())).damping(50.0).fix(root());
         let (mut world, id) = implicit_world(NO_GRAVITY, 20.0, settings, body);
         let corner = Vector::splat(0.1);

@@ -16,6 +16,7 @@ mod math;
 mod model_adaptive;
 mod model_assembly;
 mod model_balance;
+mod model_copies;
 mod model_equality;
 mod model_gradient;
 mod model_invariance;

@@ -16,8 +16,7 @@ type Answers<T> = (Vec<Vec3<T>>, Vec<Vec3<T>>, Vec<Vec3<T>>, f64);
 fn answers<T: Precision>(named: &mut Named<T>, x: &[Vec3<T>], dx: &[Vec3<T>]) -> Answers<T> {
     let (forces, product) = (named.model.forces(x), named.model.product(x, dx));
     let (mut scratch, mut together) = (Scratch::new(x.len()), vec![Vec3::ZERO; x.len()]);
-    named.model.linearize(x, &mut scratch);
-    named.model.add_forces_linearized(x, &mut scratch, &mut together);
+    named.model.linearize_and_add_forces(x, &mut scratch, &mut together);
     (forces, product, together, named.model.energy(x))
 }
 

@@ -1,9 +1,9 @@
 use crate::body::{Actuators, ExternalStiffness, NodalLoads, SimulatedBody};
 use crate::contact::Contacts;
-use crate::executor::Executor;
+use crate::executor::{Executor, NODE_BLOCK};
 use crate::math::{Scalar, Vec3};
-use crate::model::{ForceModel, Inertia, Scratch};
-use crate::solver::{BlockMatrix, Filtered, LinearOperator, add_weighted, dot, set_weighted};
+use crate::model::{ForceModel, Patches, Scratch};
+use crate::solver::{BlockMatrix, Filtered, LinearOperator, Turn, add_weighted, dot, set_weighted, turn_block};
 use crate::stage::{Stage, Stages};
 
 /// What an implicit step knows of its matrix, which is divided by the factor of the stiffness.
@@ -48,6 +48,8 @@ pub(super) struct Tangent<'a, T: Scalar> {
     /// Springs that the assembled matrix does not have, and one over the factor of the stiffness.
     pub(super) contacts: (&'a Contacts, f64),
     pub(super) stages: Stages<'a>,
+    /// Where the copies of nodes are on which a product was summed that is to be finished, and the weight of its direction.
+    unfinished: Option<(&'a Patches, Option<T>)>,
 }
 
 impl<'a, T: Scalar> Tangent<'a, T> {
@@ -63,6 +65,7 @@ impl<'a, T: Scalar> Tangent<'a, T> {
             masses: &matrix.masses,
             contacts: (&body.contacts, 1.0 / matrix.stiffness.to_f64()),
             stages,
+            unfinished: None,
         }
     }
 }
@@ -98,25 +101,29 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         contacts.add_product(scale, x, out);
     }
 
-    fn apply_along(
-        &mut self,
-        x: &[Vec3<T>],
-        filtered: &Filtered<'_, T>,
-        executor: &Executor,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        match self.models {
-            [model] if self.is_plain() => {
-                let inertia = Inertia { masses: self.masses, filtered: *filtered };
-                self.stages.run(Stage::Products(model.name()), || {
-                    model.product_with_masses(self.positions, x, &inertia, self.scratch, out)
-                })
+    fn apply_along(&mut self, mut turn: Turn<'_, T>, executor: &Executor) -> f64 {
+        self.unfinished = None;
+        if let ([model], true) = (self.models, self.is_plain()) {
+            let sums = self.stages.run(Stage::Products(model.name()), || {
+                model.sum_product(self.positions, &turn, self.masses, self.scratch)
+            });
+            if let Some((patches, curvature)) = sums {
+                self.unfinished = Some((patches, turn.weight));
+                return curvature;
             }
-            _ => {
-                self.apply(x, out);
-                filtered.apply(0, out);
-                dot(executor, x, out)
-            }
+        }
+        turn.make(executor);
+        let Turn { direction, product, filtered, .. } = turn;
+        self.apply(direction, product);
+        filtered.apply(0, product);
+        dot(executor, direction, product)
+    }
+
+    fn finish(&self, block: usize, direction: &mut [Vec3<T>], product: &mut [Vec3<T>], filtered: &Filtered<'_, T>) {
+        if let Some((patches, weight)) = self.unfinished {
+            turn_block(weight, direction, product);
+            self.scratch.write_sums_of_block(patches, block, product);
+            filtered.apply(block * NODE_BLOCK, product);
         }
     }
 }

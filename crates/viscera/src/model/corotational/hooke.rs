@@ -66,6 +66,18 @@ impl<R: Real> Hooke<R> {
         }
     }
 
+    /// The block K_pp of a corner, which is symmetric.
+    #[inline(always)]
+    pub(super) fn own_block(&self, p: Vec3<R>) -> Sym3<R> {
+        let matrix = Sym3::square(p).mul_add(self.lambda + self.mu, Sym3::diagonal(self.mu * p.squared_norm()));
+        match self.fibre {
+            Some((direction, stiffness)) => {
+                Sym3::square(direction).mul_add(stiffness * direction.dot(p).squared(), matrix)
+            }
+            None => matrix,
+        }
+    }
+
     /// The same law for dual numbers.
     #[inline(always)]
     pub(super) fn constant(&self) -> Hooke<Dual<R>> {

@@ -17,7 +17,8 @@ use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
 use crate::model::patch::{Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
-use crate::model::{ForceModel, Inertia, ModelError, Patches, Scratch};
+use crate::model::{ForceModel, ModelError, Patches, Scratch};
+use crate::solver::Turn;
 
 /// Columns before those of the law: Dm⁻¹ by columns, V0.
 const SHAPE: usize = 10;
@@ -25,9 +26,12 @@ const VOLUME: usize = 9;
 /// The most columns.
 const MOST: usize = SHAPE + FIBRED;
 
-/// Columns of a linearized element: three rotated gradients, and the turned fibre direction where there is one.
-const GRADIENTS: usize = 9;
-const MOST_LINEARIZED: usize = GRADIENTS + 3;
+/// Columns of a linearized element: three turned gradients and λ/μ, and where there are fibres their turned direction and 2κ/μ.
+const RATIO: usize = 9;
+const TURNED: usize = 10;
+const FIBRE: usize = 10;
+const FIBRE_RATIO: usize = 13;
+const TURNED_FIBRED: usize = 14;
 
 /// Corotational tetrahedra. For QR the rest shape is turned so that its own edges 01 and 02 lie along its first axes:
 /// what Gram–Schmidt finds in F then is Q Q0ᵀ, and nothing is left to do for Q0.
@@ -46,10 +50,46 @@ struct Batch<R> {
     hooke: Hooke<R>,
 }
 
-/// The law of a batch, and √(s V) R A α of the corners 1, 2, 3.
+/// √(s V μ) R A α of the corners 1, 2, 3 of a batch, and what is left of the law then: it is asked for σ/μ.
 struct Turned<R> {
-    hooke: Hooke<R>,
     gradients: Mat3<R>,
+    /// λ/μ.
+    ratio: R,
+    /// Turned direction and 2κ/μ.
+    fibre: Option<(Vec3<R>, R)>,
+}
+
+impl<R: Real> Turned<R> {
+    /// σ(sym e)/μ.
+    #[inline(always)]
+    fn stress(&self, e: &Mat3<R>) -> Sym3<R> {
+        let [a, b, c] = e.columns;
+        let (two, pressure) = (self.ratio.like(2.0), self.ratio * e.trace());
+        let stress = Sym3 {
+            xx: a.x.mul_add(two, pressure),
+            yy: b.y.mul_add(two, pressure),
+            zz: c.z.mul_add(two, pressure),
+            xy: a.y + b.x,
+            xz: a.z + c.x,
+            yz: b.z + c.y,
+        };
+        match self.fibre {
+            Some((direction, ratio)) => Sym3::square(direction).mul_add(ratio * direction.dot(*e * direction), stress),
+            None => stress,
+        }
+    }
+
+    /// The forces of a frame in which the edges make `e` of the gradients.
+    #[inline(always)]
+    fn forces(&self, e: &Mat3<R>) -> Mat3<R> {
+        Mat3::from(self.stress(e)) * self.gradients
+    }
+
+    /// The law of σ/μ.
+    #[inline(always)]
+    fn hooke(&self) -> Hooke<R> {
+        Hooke { lambda: self.ratio, mu: self.ratio.like(1.0), fibre: self.fibre }
+    }
 }
 
 impl<R: Real> Batch<R> {
@@ -90,7 +130,7 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     fn linearized_columns(&self) -> usize {
-        if self.fibred { MOST_LINEARIZED } else { GRADIENTS }
+        if self.fibred { TURNED_FIBRED } else { TURNED }
     }
 
     #[inline(always)]
@@ -110,9 +150,8 @@ impl<T: Scalar> CorotationalTets<T> {
             let (slot, lane) = (tet.row / T::LANES, tet.row % T::LANES);
             let number = |column: usize| linearization[(slot * columns + column) * T::LANES + lane];
             let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
-            let constant = |column: usize| self.constants.get(tet.row, SHAPE + column);
-            let fibre = self.fibred.then(|| (vector(GRADIENTS), constant(5)));
-            let hooke = Hooke { lambda: constant(0), mu: constant(1), fibre };
+            let fibre = self.fibred.then(|| (vector(FIBRE), number(FIBRE_RATIO)));
+            let hooke = Hooke { lambda: number(RATIO), mu: T::ONE, fibre };
             let [b, c, d] = [vector(0), vector(3), vector(6)];
             let gradients = [-(b + c + d), b, c, d];
             for q in 0..4 {
@@ -137,6 +176,14 @@ impl<T: Scalar> CorotationalTets<T> {
                 self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df)) * volume * inverse.transpose()
             });
         }
+    }
+
+    /// Keeps turned gradients in the scratch, and sums the forces there.
+    fn turn(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
+        let (sums, linearization) = scratch.sums_and_linearization(self.sum_rows(), self.linearization_len());
+        let patches = self.order.record_and_sum(x, &Turning(self), sums, linearization);
+        scratch.is_linearized = true;
+        patches
     }
 
     /// The derivative of the forces, that of the rotations as the formulation has it.
@@ -166,10 +213,7 @@ struct FrozenProduct<'a, T: Scalar> {
     tets: &'a CorotationalTets<T>,
     linearization: &'a [T],
 }
-/// Forces from turned gradients: with those of a body at rest, √V I, taken off, D gᵀ is √V (F Rᵀ − I), the strain in the turned
-/// frame.
-struct FrozenForces<'a, T: Scalar>(FrozenProduct<'a, T>);
-/// Turns the gradients.
+/// Turns the gradients, and finds the forces by them.
 struct Turning<'a, T: Scalar>(&'a CorotationalTets<T>);
 
 impl<T: Scalar> Element<T, 1> for Forces<'_, T> {
@@ -197,43 +241,33 @@ impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
 impl<T: Scalar> FrozenProduct<'_, T> {
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S, slot: usize) -> Turned<T::Lanes<S>> {
-        let block = self.tets.constants.block(slot);
-        let columns = self.tets.linearized_columns() * T::LANES;
-        let row = &self.linearization[slot * columns..(slot + 1) * columns];
-        let number = |column: usize| T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        // Spelt as two lengths, so that a slot is checked once and not column by column.
+        let len = T::LANES * if self.tets.fibred { TURNED_FIBRED } else { TURNED };
+        let row = &self.linearization[slot * len..][..len];
+        let number = |column: usize| T::Lanes::<S>::load(simd, &row[column * T::LANES..]);
         let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
-        let fibre = if self.tets.fibred { Some((load(simd, row, GRADIENTS), number(SHAPE + 5))) } else { None };
-        Turned { hooke: Hooke { lambda: number(SHAPE), mu: number(SHAPE + 1), fibre }, gradients }
+        let fibre = if self.tets.fibred { Some((load(simd, row, FIBRE), number(FIBRE_RATIO))) } else { None };
+        Turned { gradients, ratio: number(RATIO), fibre }
     }
 }
 
-// 129 flops for an isotropic law: 9 for dD, 54 for dD gᵀ, 15 for the stress, 45 for its products, 6 for corner 0.
+// 117 flops for an isotropic law: 9 for dD, 45 for dD gᵀ, 12 for the stress, 45 for its products, 6 for corner 0. Benches count the 129 of a law with
+// λ and μ apart.
 impl<T: Scalar> Element<T, 1> for FrozenProduct<'_, T> {
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let Turned { hooke, gradients } = self.load(simd, slot);
-        let strain = (edges[0] * gradients.transpose()).symmetric_part();
-        times(hooke.stress(strain), &gradients)
-    }
-}
-
-impl<T: Scalar> Element<T, 1> for FrozenForces<'_, T> {
-    #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let Turned { hooke, gradients } = self.0.load(simd, slot);
-        let volume = T::Lanes::<S>::load(simd, &self.0.tets.constants.block(slot)[VOLUME * T::LANES..]);
-        let strain = (edges[0] * gradients.transpose()).symmetric_part() - Sym3::diagonal(volume.sqrt());
-        times(hooke.stress(strain), &gradients)
+        let turned = self.load(simd, slot);
+        turned.forces(&(edges[0] * turned.gradients.transpose()))
     }
 }
 
 impl<T: Scalar> Diagonal<T> for FrozenProduct<'_, T> {
     #[inline(always)]
     fn blocks<S: Simd>(&self, simd: S, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
-        let Turned { hooke, gradients } = self.load(simd, slot);
-        let [b, c, d] = gradients.columns;
-        let block = |gradient| hooke.block(gradient, gradient).symmetric_part();
-        [block(-(b + c + d)), block(b), block(c), block(d)]
+        let turned = self.load(simd, slot);
+        let hooke = turned.hooke();
+        let [b, c, d] = turned.gradients.columns;
+        [hooke.own_block(-(b + c + d)), hooke.own_block(b), hooke.own_block(c), hooke.own_block(d)]
     }
 }
 
@@ -242,26 +276,36 @@ impl<T: Scalar> Record<T> for Turning<'_, T> {
         self.0.linearized_columns()
     }
 
+    // With the gradients of a body at rest, D gᵀ is √(V μ) F Rᵀ: what it is above √(V μ) I is strain, in the turned frame.
     #[inline(always)]
-    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) {
+    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
         let f = *edges * inverse;
         let r = formulation.rotation(&f);
         let (transport, scale) = formulation.transport(&r, &f);
-        let gradients = transport * inverse.transpose() * (volume * scale).sqrt();
+        let root = (volume * scale * hooke.mu).sqrt();
+        let turned = Turned {
+            gradients: transport * inverse.transpose() * root,
+            ratio: hooke.lambda / hooke.mu,
+            fibre: match hooke.fibre {
+                Some((direction, stiffness)) => Some((r * direction, stiffness / hooke.mu)),
+                None => None,
+            },
+        };
         for i in 0..3 {
-            store(gradients.columns[i], &mut row[3 * i * T::LANES..]);
+            store(turned.gradients.columns[i], &mut row[3 * i * T::LANES..]);
         }
-        if let Some((direction, _)) = hooke.fibre {
-            store(r * direction, &mut row[GRADIENTS * T::LANES..]);
+        turned.ratio.store(&mut row[RATIO * T::LANES..]);
+        if let Some((direction, ratio)) = turned.fibre {
+            store(direction, &mut row[FIBRE * T::LANES..]);
+            ratio.store(&mut row[FIBRE_RATIO * T::LANES..]);
+        }
+        if formulation.is_linear_in_its_frame() {
+            turned.forces(&(*edges * turned.gradients.transpose() - Mat3::diagonal(root)))
+        } else {
+            formulation.stress(&hooke, &r, &f) * volume * inverse.transpose()
         }
     }
-}
-
-/// S A for a symmetric S.
-#[inline(always)]
-fn times<R: Real>(s: Sym3<R>, a: &Mat3<R>) -> Mat3<R> {
-    Mat3::from(s) * *a
 }
 
 impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
@@ -277,15 +321,6 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         Some(self.order.sum([x], &Forces(self), scratch.sums(self.sum_rows()).0))
     }
 
-    fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        if scratch.is_linearized && self.formulation.is_linear_in_its_frame() {
-            let (sums, linearization) = scratch.sums(self.sum_rows());
-            self.order.add([x], &FrozenForces(FrozenProduct { tets: self, linearization }), sums, out);
-        } else {
-            self.add_forces(x, scratch, out);
-        }
-    }
-
     fn linearization_len(&self) -> usize {
         match self.formulation.tangent {
             Tangent::Frozen => self.order.row_count() * self.linearized_columns(),
@@ -295,8 +330,17 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
 
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
         if self.formulation.tangent == Tangent::Frozen {
-            let (executor, _, linearization) = scratch.start_linearization(self.linearization_len());
-            self.order.record(x, &Turning(self), executor, linearization);
+            self.turn(x, scratch);
+        }
+    }
+
+    fn linearize_and_add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        match self.formulation.tangent {
+            Tangent::Frozen => {
+                let patches = self.turn(x, scratch);
+                scratch.add_sums(patches, out);
+            }
+            Tangent::Exact => self.add_forces(x, scratch, out),
         }
     }
 
@@ -315,22 +359,20 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         self.order.add([x, dx], &Derivative { tets: self, formulation }, scratch.sums(self.sum_rows()).0, out);
     }
 
-    fn product_with_masses(
+    fn sum_product(
         &self,
         x: &[Vec3<T>],
-        dx: &[Vec3<T>],
-        inertia: &Inertia<'_, T>,
+        turn: &Turn<'_, T>,
+        masses: &[T],
         scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
+    ) -> Option<(&Patches, f64)> {
         let is_linearized = scratch.is_linearized;
         let (sums, linearization) = scratch.sums(self.sum_rows());
-        if is_linearized {
-            let element = FrozenProduct { tets: self, linearization };
-            self.order.product_with_masses([dx], &element, sums, (dx, inertia), out)
+        Some(if is_linearized {
+            self.order.sum_product(x, (turn, masses), &FrozenProduct { tets: self, linearization }, sums)
         } else {
-            self.order.product_with_masses([x, dx], &self.derivative(), sums, (dx, inertia), out)
-        }
+            self.order.sum_product(x, (turn, masses), &self.derivative(), sums)
+        })
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {

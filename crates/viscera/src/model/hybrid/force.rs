@@ -68,8 +68,8 @@ impl<T: Scalar> ForceModel<T> for HybridModel<T> {
         self.moving.linearization_len()
     }
 
-    fn add_forces_linearized(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.moving.add_forces_linearized(x, scratch, out);
+    fn linearize_and_add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
+        self.moving.linearize_and_add_forces(x, scratch, out);
         self.add_stiffness_times(|place, node| x[node] - self.rest[place], out);
     }
 

@@ -4,6 +4,8 @@
 //! A patch numbers its nodes for itself. A node that several patches share has a copy in each of them; the copies are added
 //! up in the order of the patches, so that the bits of the sum do not depend on the number of threads.
 
+mod copies;
+mod direction;
 mod fan;
 mod partition;
 mod tet_fans;
@@ -11,13 +13,10 @@ mod visitor;
 
 pub(crate) use tet_fans::{Diagonal, Element, Measure, Record, TetFans};
 
-use fearless_simd::dispatch;
-
+use self::copies::Copies;
 use self::partition::partition;
-use crate::executor::{Divide, Executor, NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
-use crate::model::Inertia;
-use crate::solver::dot_of;
+use crate::executor::{Divide, Executor};
+use crate::math::{Mat3, Scalar, Sym3, Vec3};
 
 /// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
 /// modulo it is a number of a node, and needs no check.
@@ -41,10 +40,7 @@ pub struct Patches {
     starts: Vec<usize>,
     /// Where the rows of each patch begin, and the end.
     row_starts: Vec<usize>,
-    /// The rows of the copies of each node, node after node.
-    copies: Vec<u32>,
-    /// Where each node begins in `copies`, and the end.
-    copy_starts: Vec<u32>,
+    copies: Copies,
 }
 
 impl Patches {
@@ -65,22 +61,13 @@ impl Patches {
         let mut patches = Self { starts: vec![0], row_starts: vec![0], ..Self::default() };
         let mut copies = Vec::new();
         for mut touched in parts {
-            let first = patches.copies();
+            let first = patches.rows();
             copies.extend(touched.iter().zip(first..).map(|(&node, row)| (node, row as u32)));
             patches.row_starts.push(first + rows.unwrap_or(touched.len()));
             patches.nodes.append(&mut touched);
             patches.starts.push(patches.nodes.len());
         }
-        copies.sort_by_key(|&(node, _)| node);
-        patches.copies = copies.iter().map(|&(_, row)| row).collect();
-        let mut ends = vec![0; nodes + 1];
-        for (node, _) in copies {
-            ends[node as usize + 1] += 1;
-        }
-        for node in 0..nodes {
-            ends[node + 1] += ends[node];
-        }
-        patches.copy_starts = ends;
+        patches.copies = Copies::new(nodes, copies);
         patches
     }
 
@@ -90,7 +77,7 @@ impl Patches {
     }
 
     /// Rows for the copies of nodes in all patches together.
-    pub(crate) fn copies(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.row_starts[self.count()]
     }
 
@@ -102,9 +89,7 @@ impl Patches {
 
     /// Size of the stored numbers [bytes].
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice())
-            + size_of_val(self.copies.as_slice())
-            + size_of_val(self.copy_starts.as_slice())
+        size_of_val(self.nodes.as_slice()) + self.copies.bytes()
     }
 
     /// Reads the nodes of a patch from nodal arrays. The rows are the caller's, so that they are not moved about.
@@ -131,97 +116,57 @@ impl Patches {
         width: usize,
         work: &(impl Fn(usize, &mut [[T; 4]]) + Sync),
     ) {
-        let data = PerPatch { values: rows, starts: &self.row_starts, width };
+        let data = self.per_patch(rows, width);
         executor.each(self.count(), data, &|patch, part: PerPatch<'_, [T; 4]>| work(patch, part.values));
+    }
+
+    /// The rows of all patches, `width` for each of their nodes.
+    pub(crate) fn per_patch<'a, V>(&'a self, rows: &'a mut [V], width: usize) -> PerPatch<'a, V> {
+        PerPatch { values: rows, starts: &self.row_starts, width }
     }
 
     /// Adds to each node of `out` the rows of its copies.
     pub(crate) fn add_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        self.for_copies(executor, out, &|sum: &mut Vec3<T>, copy| *sum += first_three(rows[copy]));
+        let add = |sum: &mut Vec3<T>, row| *sum += force(rows, row);
+        self.copies.each(executor, out, &add, &add);
     }
 
     /// Writes to each node of `out` the sum of the rows of its copies.
     pub(crate) fn write_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
-            self.write_up_block(block, rows, out);
-        });
+        let (write, add) =
+            (|sum: &mut Vec3<T>, row| *sum = force(rows, row), |sum: &mut Vec3<T>, row| *sum += force(rows, row));
+        self.copies.each(executor, out, &write, &add);
     }
 
     /// The same for a block of nodes.
     #[inline(always)]
     pub(crate) fn write_up_block<T: Scalar>(&self, block: usize, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        let ends = &self.copy_starts[block * NODE_BLOCK..];
-        for (sum, ends) in out.iter_mut().zip(ends.windows(2)) {
-            let copies = &self.copies[ends[0] as usize..ends[1] as usize];
-            // Most nodes have one.
-            *sum = copies.split_first().map_or(Vec3::ZERO, |(&first, others)| {
-                others
-                    .iter()
-                    .fold(first_three(rows[first as usize]), |sum, &copy| sum + first_three(rows[copy as usize]))
-            });
-        }
+        self.copies.each_of_block(block, out, |sum, row| *sum = force(rows, row), |sum, row| *sum += force(rows, row));
     }
 
-    /// Writes to each node of `out` its mass times `dx` and the rows of its copies, filtered; gives `dx`·`out`.
-    pub(crate) fn add_up_with_masses<T: Scalar>(
-        &self,
-        executor: &Executor,
-        rows: &[[T; 4]],
-        (dx, inertia): (&[Vec3<T>], &Inertia<'_, T>),
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
-        let work = |block: usize, NodeBlocks(out): NodeBlocks<'_, Vec3<T>>| {
-            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + out.len();
-            let (dx, masses) = (&dx[nodes.clone()], &inertia.masses[nodes.clone()]);
-            let ends = self.copy_starts[nodes.start..=nodes.end].windows(2);
-            for (((sum, ends), &dx), &mass) in out.iter_mut().zip(ends).zip(dx).zip(masses) {
-                *sum = dx * mass;
-                if let Some((&first, others)) = self.copies[ends[0] as usize..ends[1] as usize].split_first() {
-                    *sum += first_three(rows[first as usize]);
-                    others.iter().for_each(|&copy| *sum += first_three(rows[copy as usize]));
-                }
-            }
-            inertia.filtered.apply(nodes.start, out);
-            dispatch!(dispatch_level(), _simd => dot_of(dx, out))
-        };
-        executor.fold(node_blocks(out.len()), NodeBlocks(out), &work, &|a, b| a + b).unwrap_or(0.0)
-    }
-
-    /// The same where `out` has rows as well.
+    /// Adds to each node of `out` the rows of its copies, where `out` has rows as well.
     pub(crate) fn add_up_rows<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [[T; 4]]) {
-        self.for_copies(executor, out, &|sum: &mut [T; 4], copy| {
-            let [x, y, z, _] = rows[copy];
+        let add = |sum: &mut [T; 4], row: usize| {
+            let [x, y, z] = force(rows, row).to_array();
             *sum = [sum[0] + x, sum[1] + y, sum[2] + z, sum[3]];
-        });
+        };
+        self.copies.each(executor, out, &add, &add);
     }
 
     /// Adds to each node of `out` the symmetric blocks of its copies: xx, yy, zz in one row, xy, xz, yz in the next.
     pub(crate) fn add_up_blocks<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Mat3<T>]) {
-        self.for_copies(executor, out, &|sum: &mut Mat3<T>, copy| {
-            let ([xx, yy, zz, _], [xy, xz, yz, _]) = (rows[2 * copy], rows[2 * copy + 1]);
+        let add = |sum: &mut Mat3<T>, row: usize| {
+            let ([xx, yy, zz], [xy, xz, yz]) = (force(rows, 2 * row).to_array(), force(rows, 2 * row + 1).to_array());
             *sum += Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz });
-        });
-    }
-
-    /// Hands each copy of each node to `add`, in the order of the patches.
-    fn for_copies<V: Send>(&self, executor: &Executor, out: &mut [V], add: &(impl Fn(&mut V, usize) + Sync)) {
-        assert_eq!(out.len() + 1, self.copy_starts.len(), "arrays and scratch must be those of the model's mesh");
-        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, out: NodeBlocks<'_, V>| {
-            let starts = &self.copy_starts[block * NODE_BLOCK..];
-            for (sum, ends) in out.0.iter_mut().zip(starts.windows(2)) {
-                for &copy in &self.copies[ends[0] as usize..ends[1] as usize] {
-                    add(sum, copy as usize);
-                }
-            }
-        });
+        };
+        self.copies.each(executor, out, &add, &add);
     }
 }
 
-/// The force in a row.
+/// The force in a row; none where there is no such row.
 #[inline(always)]
-fn first_three<T: Scalar>([x, y, z, _]: [T; 4]) -> Vec3<T> {
-    Vec3::new(x, y, z)
+fn force<T: Scalar>(rows: &[[T; 4]], row: usize) -> Vec3<T> {
+    rows.get(row).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
 }
 
 /// Values of the patches, patch after patch.

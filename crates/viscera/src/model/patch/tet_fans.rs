@@ -1,12 +1,13 @@
 use fearless_simd::{Simd, dispatch};
 
 use super::fan::{Fan, fans};
-use super::visitor::{Keep, Largest, Scatter, ScatterBlocks, Visitor, indices};
+use super::visitor::{Forces, Keep, Largest, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
 use crate::mesh::TetMesh;
-use crate::model::{Inertia, Sums};
+use crate::model::Sums;
+use crate::solver::Turn;
 
 /// Tetrahedra in the order in which loops visit them: patch by patch, fan by fan, as many fans at once as there are lanes.
 ///
@@ -136,9 +137,9 @@ impl TetFans {
         self.rows[cell as usize] as usize
     }
 
-    /// Rows that a loop sums in: forces take one for each copy of a node, blocks two.
+    /// Rows that a loop sums in: forces take one for each copy of a node, blocks two, products two more for the direction and the masses.
     pub(crate) fn sum_rows(&self) -> usize {
-        2 * self.patches.copies()
+        3 * self.patches.rows()
     }
 
     /// Size of the numbers that a loop reads [bytes].
@@ -176,24 +177,6 @@ impl TetFans {
         self.sum(fields, element, Sums { executor, rows: &mut *rows }).add_up(executor, rows, out);
     }
 
-    /// The same for a product along `dx`, with masses, filtered, into `out`; gives `dx`·`out`.
-    pub(crate) fn product_with_masses<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
-        &self,
-        fields: [&[Vec3<T>]; FIELDS],
-        element: &E,
-        sums: Sums<'_, T>,
-        (dx, inertia): (&[Vec3<T>], &Inertia<'_, T>),
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        let Sums { executor, rows } = sums;
-        self.sum(fields, element, Sums { executor, rows: &mut *rows }).add_up_with_masses(
-            executor,
-            rows,
-            (dx, inertia),
-            out,
-        )
-    }
-
     /// Sums the forces of each patch on copies of its nodes, in the first rows.
     pub(crate) fn sum<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
         &self,
@@ -201,28 +184,73 @@ impl TetFans {
         element: &E,
         Sums { executor, rows }: Sums<'_, T>,
     ) -> &Patches {
-        let rows = &mut rows[..self.patches.copies()];
+        let rows = &mut rows[..self.patches.rows()];
         self.patches.each(executor, rows, 1, &|patch, rows| {
             let ([sums], _) = rows.as_chunks_mut() else { return };
-            let mut places = no_rows();
+            let mut places = no_rows::<T, FIELDS>();
             sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
             self.patches.gather(patch, &fields, &mut places);
-            if E::IS_WIDE {
-                dispatch!(dispatch_level(), simd => self.scatter(simd, patch, &places, element, sums));
-            } else {
-                self.scatter(baseline(), patch, &places, element, sums);
-            }
+            self.scatter(patch, places.each_ref(), element, sums);
         });
         &self.patches
     }
 
+    /// The same for a product at `x`, along the direction that `turn` is on its way to, with masses; gives the curvature along it as well.
+    pub(crate) fn sum_product<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+        &self,
+        x: &[Vec3<T>],
+        (turn, masses): (&Turn<'_, T>, &[T]),
+        element: &E,
+        Sums { executor, rows }: Sums<'_, T>,
+    ) -> (&Patches, f64) {
+        let count = self.patches.rows();
+        let (sums, rest) = rows.split_at_mut(count);
+        let (directions, inertia) = rest.split_at_mut(count);
+        let per_patch = |rows| self.patches.per_patch(rows, 1);
+        let data = ((per_patch(sums), per_patch(directions)), per_patch(&mut inertia[..count]));
+        let work = |patch: usize, ((sums, directions), inertia): ProductRows<'_, T>| {
+            let (([sums], _), ([direction], _), ([inertia], _)) =
+                (sums.values.as_chunks_mut(), directions.values.as_chunks_mut(), inertia.values.as_chunks_mut())
+            else {
+                return 0.0;
+            };
+            self.patches.turn(patch, turn, masses, [sums, direction, inertia]);
+            let mut places = no_rows::<T, 1>();
+            if FIELDS > 1 {
+                self.patches.gather(patch, &[x], &mut places);
+            }
+            let direction = &*direction;
+            let fields = std::array::from_fn(|field| if field + 1 == FIELDS { direction } else { &places[0] });
+            self.scatter(patch, fields, element, sums);
+            self.patches.curvature(patch, direction, sums)
+        };
+        let curvature = executor.fold(self.patches.count(), data, &work, &|a, b| a + b);
+        (&self.patches, curvature.unwrap_or(0.0))
+    }
+
+    /// Adds up forces in a patch. Out of line, so that the kernel exists once.
+    #[inline(never)]
+    fn scatter<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
+        &self,
+        patch: usize,
+        fields: [&PatchRows<T>; FIELDS],
+        element: &E,
+        sums: &mut PatchRows<T>,
+    ) {
+        if E::IS_WIDE {
+            dispatch!(dispatch_level(), simd => self.scatter_with(simd, patch, fields, element, sums));
+        } else {
+            self.scatter_with(baseline(), patch, fields, element, sums);
+        }
+    }
+
     #[inline(always)]
-    fn scatter<T: Scalar, S: Simd, const FIELDS: usize>(
+    fn scatter_with<T: Scalar, S: Simd, const FIELDS: usize>(
         &self,
         simd: S,
         patch: usize,
-        fields: &[PatchRows<T>; FIELDS],
-        element: &impl Element<T, FIELDS>,
+        fields: [&PatchRows<T>; FIELDS],
+        element: impl Forces<T, S, FIELDS>,
         sums: &mut PatchRows<T>,
     ) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
@@ -243,9 +271,9 @@ impl TetFans {
             let (mut places, mut sums) = (no_rows(), no_rows());
             self.patches.gather(patch, &[x], &mut places);
             if E::IS_WIDE {
-                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places, element, &mut sums));
+                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places[0], element, &mut sums));
             } else {
-                self.scatter_blocks(baseline(), patch, &places, element, &mut sums);
+                self.scatter_blocks(baseline(), patch, &places[0], element, &mut sums);
             }
             for (node, pair) in rows.chunks_exact_mut(2).enumerate().take(self.patches.nodes(patch).len()) {
                 (pair[0], pair[1]) = (sums[0][node], sums[1][node]);
@@ -259,32 +287,35 @@ impl TetFans {
         &self,
         simd: S,
         patch: usize,
-        fields: &[PatchRows<T>; 1],
+        places: &PatchRows<T>,
         element: &impl Diagonal<T>,
         sums: &mut [PatchRows<T>; 2],
     ) {
         let zero = Sym3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
         let mut scatter = ScatterBlocks { simd, element, sums, origin: zero, end: zero, carried: zero, kept: zero };
-        self.walk(simd, patch, fields, &mut scatter);
+        self.walk(simd, patch, [places], &mut scatter);
     }
 
-    /// Fills the blocks of rows of `table` with what `record` keeps of each tetrahedron at `x`.
-    pub(crate) fn record<T: Scalar>(
+    /// Fills the blocks of rows of `table` with what `record` keeps of each tetrahedron at `x`, and sums its forces on copies of the nodes.
+    pub(crate) fn record_and_sum<T: Scalar>(
         &self,
         x: &[Vec3<T>],
         record: &impl Record<T>,
-        executor: &Executor,
+        Sums { executor, rows }: Sums<'_, T>,
         table: &mut [T],
-    ) {
+    ) -> &Patches {
         let block = record.columns() * T::LANES;
-        let data = PerPatch { values: table, starts: &self.slot_starts, width: block };
-        executor.each(self.patches.count(), data, &|patch, part: PerPatch<'_, T>| {
-            let mut places = no_rows();
+        let table = PerPatch { values: table, starts: &self.slot_starts, width: block };
+        let data = (table, self.patches.per_patch(&mut rows[..self.patches.rows()], 1));
+        executor.each(self.patches.count(), data, &|patch, (table, rows): (PerPatch<'_, T>, PerPatch<'_, [T; 4]>)| {
+            let ([sums], _) = rows.values.as_chunks_mut() else { return };
+            let mut places = no_rows::<T, 1>();
+            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
             self.patches.gather(patch, &[x], &mut places);
-            let first = self.slot_starts[patch];
-            let mut keep = Keep { record, values: part.values, first, block };
-            dispatch!(dispatch_level(), simd => self.walk(simd, patch, &places, &mut keep));
+            let keep = Keep { record, values: table.values, first: self.slot_starts[patch], block };
+            dispatch!(dispatch_level(), simd => self.scatter_with(simd, patch, places.each_ref(), keep, sums));
         });
+        &self.patches
     }
 
     /// The largest of what `measure` says of each tetrahedron at `x`, and 0 if there is none above.
@@ -292,7 +323,7 @@ impl TetFans {
         let work = |patch: usize, (): ()| {
             let mut places = no_rows();
             self.patches.gather(patch, &[x], &mut places);
-            dispatch!(dispatch_level(), simd => self.largest_of(simd, patch, &places, measure))
+            dispatch!(dispatch_level(), simd => self.largest_of(simd, patch, &places[0], measure))
         };
         executor.fold(self.patches.count(), (), &work, &Real::max).unwrap_or(T::ZERO)
     }
@@ -302,11 +333,11 @@ impl TetFans {
         &self,
         simd: S,
         patch: usize,
-        fields: &[PatchRows<T>; 1],
+        places: &PatchRows<T>,
         measure: &impl Measure<T>,
     ) -> T {
         let mut largest = Largest { measure, value: T::Lanes::<S>::splat(simd, T::ZERO) };
-        self.walk(simd, patch, fields, &mut largest);
+        self.walk(simd, patch, [places], &mut largest);
         let mut lanes = [T::ZERO; MAX_LANES];
         largest.value.store(&mut lanes);
         lanes.into_iter().fold(T::ZERO, Real::max)
@@ -321,7 +352,7 @@ impl TetFans {
         &self,
         simd: S,
         patch: usize,
-        fields: &[PatchRows<T>; FIELDS],
+        fields: [&PatchRows<T>; FIELDS],
         visitor: &mut impl Visitor<T, S, FIELDS>,
     ) {
         for batch in &self.batches[self.batch_starts[patch]..self.batch_starts[patch + 1]] {
@@ -358,6 +389,9 @@ impl TetFans {
     }
 }
 
+/// Sums, direction and masses of a product on the copies of the nodes.
+type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, [T; 4]>);
+
 /// What a loop makes of tetrahedra at which the lanes are, as a function of their edges in some nodal arrays.
 pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
     /// Whether it is worth compiling for each instruction set.
@@ -374,12 +408,12 @@ pub(crate) trait Diagonal<T: Scalar>: Sync {
     fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
 }
 
-/// What a loop keeps of tetrahedra, as a function of their edges.
+/// What a loop keeps of tetrahedra, as a function of their edges, and what it finds of their forces on the way.
 pub(crate) trait Record<T: Scalar>: Sync {
     /// How many numbers it keeps of each.
     fn columns(&self) -> usize;
-    /// Writes the block of rows of a slot.
-    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, block: &mut [T]);
+    /// Writes the block of rows of a slot; gives the forces on the corners 1, 2, 3.
+    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, block: &mut [T]) -> Mat3<T::Lanes<S>>;
 }
 
 /// A number of tetrahedra, as a function of their edges.
@@ -417,13 +451,13 @@ fn ring_node(fan: &Fan, place: usize) -> u32 {
 #[inline(always)]
 fn gather<T: Scalar, S: Simd, const FIELDS: usize>(
     simd: S,
-    fields: &[PatchRows<T>; FIELDS],
+    fields: [&PatchRows<T>; FIELDS],
     nodes: &[u32],
 ) -> [Vec3<T::Lanes<S>>; FIELDS] {
     let indices = indices(nodes, T::LANES);
     let mut places = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); FIELDS];
     for field in 0..FIELDS {
-        let [x, y, z, _] = T::Lanes::<S>::gather(simd, &fields[field], &indices[..T::LANES]);
+        let [x, y, z, _] = T::Lanes::<S>::gather(simd, fields[field], &indices[..T::LANES]);
         places[field] = Vec3::new(x, y, z);
     }
     places

@@ -18,10 +18,39 @@ pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
     fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
 }
 
+/// Who knows the forces of the tetrahedra of a slot.
+pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
+    /// Those on the corners 1, 2, 3.
+    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
+}
+
+impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Forces<T, S, FIELDS> for &E {
+    #[inline(always)]
+    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>> {
+        (**self).forces(simd, slot, edges)
+    }
+}
+
+/// Writes rows, slot by slot.
+pub(super) struct Keep<'a, T, R> {
+    pub(super) record: &'a R,
+    pub(super) values: &'a mut [T],
+    pub(super) first: usize,
+    pub(super) block: usize,
+}
+
+impl<T: Scalar, S: Simd, R: Record<T>> Forces<T, S, 1> for Keep<'_, T, R> {
+    #[inline(always)]
+    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        let start = (slot - self.first) * self.block;
+        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block])
+    }
+}
+
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
-pub(super) struct Scatter<'a, T: Scalar, S: Simd, E> {
+pub(super) struct Scatter<'a, T: Scalar, S: Simd, F> {
     pub(super) simd: S,
-    pub(super) element: &'a E,
+    pub(super) element: F,
     pub(super) sums: &'a mut PatchRows<T>,
     /// Force on the end of the axis.
     pub(super) end: Vec3<T::Lanes<S>>,
@@ -33,7 +62,7 @@ pub(super) struct Scatter<'a, T: Scalar, S: Simd, E> {
     pub(super) kept: Vec3<T::Lanes<S>>,
 }
 
-impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, E> {
+impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, F> {
     #[inline(always)]
     fn begin(&mut self) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(self.simd, T::ZERO));
@@ -103,22 +132,6 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
 fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
     add(Vec3::new(block.xx, block.yy, block.zz), nodes, &mut sums[0]);
     add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
-}
-
-/// Writes rows, slot by slot.
-pub(super) struct Keep<'a, T, R> {
-    pub(super) record: &'a R,
-    pub(super) values: &'a mut [T],
-    pub(super) first: usize,
-    pub(super) block: usize,
-}
-
-impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, R> {
-    #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
-        let start = (slot - self.first) * self.block;
-        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block]);
-    }
 }
 
 /// Keeps the largest number.

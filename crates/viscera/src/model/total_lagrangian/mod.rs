@@ -15,12 +15,13 @@ use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{
-    BlockSink, ForceModel, GenericRecipe, Inertia, MeanForces, ModelError, ModelInfo, ModelKind, Patches, Precision,
-    Scratch, recipe,
+    BlockSink, ForceModel, GenericRecipe, MeanForces, ModelError, ModelInfo, ModelKind, Patches, Precision, Scratch,
+    recipe,
 };
 use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
+use crate::solver::Turn;
 
 /// The direct model of any law, on tetrahedra or hexahedra.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,15 +151,14 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.add_product(x, dx, scratch, out);
     }
 
-    fn product_with_masses(
+    fn sum_product(
         &self,
         x: &[Vec3<T>],
-        dx: &[Vec3<T>],
-        inertia: &Inertia<'_, T>,
+        turn: &Turn<'_, T>,
+        masses: &[T],
         scratch: &mut Scratch<T>,
-        out: &mut [Vec3<T>],
-    ) -> f64 {
-        self.tets.product_with_masses(x, dx, inertia, scratch, out)
+    ) -> Option<(&Patches, f64)> {
+        Some(self.tets.sum_product(x, turn, masses, scratch))
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], _scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
