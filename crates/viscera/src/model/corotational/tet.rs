@@ -134,13 +134,26 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, slot: usize) -> Batch<T::Lanes<S>> {
-        let block = self.constants.block(slot);
+    fn load<S: Simd, const PLAIN: bool>(&self, simd: S, slot: usize) -> Batch<T::Lanes<S>> {
+        let fibred = !PLAIN && self.fibred;
+        let columns = SHAPE + if fibred { FIBRED } else { ISOTROPIC };
+        let block = self.constants.block_of(T::LANES, columns, slot);
         let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); MOST];
-        for column in 0..self.columns() {
+        for column in 0..columns {
             numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
         }
-        Batch::at(&numbers, self.fibred)
+        Batch::at(&numbers, fibred)
+    }
+
+    /// How elements are formulated, which the compiler knows of plain ones.
+    #[inline(always)]
+    fn formulation<const PLAIN: bool>(&self) -> Formulation {
+        if PLAIN { Formulation::default() } else { self.formulation }
+    }
+
+    /// Whether elements are as they are by default, and without fibres.
+    fn is_plain(&self) -> bool {
+        !self.fibred && self.formulation == Formulation::default()
     }
 
     /// The blocks of the tangent with the rotations held.
@@ -178,10 +191,23 @@ impl<T: Scalar> CorotationalTets<T> {
         }
     }
 
+    fn sum(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
+        let sums = scratch.sums(self.sum_rows()).0;
+        if self.is_plain() {
+            self.order.sum([x], &Forces::<T, true>(self), sums)
+        } else {
+            self.order.sum([x], &Forces::<T, false>(self), sums)
+        }
+    }
+
     /// Keeps turned gradients in the scratch, and sums the forces there.
     fn turn(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
         let (sums, linearization) = scratch.sums_and_linearization(self.sum_rows(), self.linearization_len());
-        let patches = self.order.record_and_sum(x, &Turning(self), sums, linearization);
+        let patches = if self.is_plain() {
+            self.order.record_and_sum(x, &Turning::<T, true>(self), sums, linearization)
+        } else {
+            self.order.record_and_sum(x, &Turning::<T, false>(self), sums, linearization)
+        };
         scratch.is_linearized = true;
         patches
     }
@@ -201,8 +227,9 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 }
 
-/// Forces.
-struct Forces<'a, T: Scalar>(&'a CorotationalTets<T>);
+/// Forces. Plain elements have kernels of their own, here and below: with all formulations in one, registers do not suffice, and it took a
+/// quarter longer.
+struct Forces<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 /// What a formulation says of the derivative of the forces.
 struct Derivative<'a, T: Scalar> {
     tets: &'a CorotationalTets<T>,
@@ -212,14 +239,15 @@ struct Derivative<'a, T: Scalar> {
 /// suffice: with both in one a product took a fifth longer.
 struct FrozenProduct<'a, T: Scalar, const FIBRED: bool>(&'a [T]);
 /// Turns the gradients, and finds the forces by them.
-struct Turning<'a, T: Scalar>(&'a CorotationalTets<T>);
+struct Turning<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 
-impl<T: Scalar> Element<T, 1> for Forces<'_, T> {
+impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let Batch { inverse, volume, hooke } = self.0.load(simd, slot);
+        let (Batch { inverse, volume, hooke }, formulation) =
+            (self.0.load::<S, PLAIN>(simd, slot), self.0.formulation::<PLAIN>());
         let f = edges[0] * inverse;
-        let stress = self.0.formulation.stress(&hooke, &self.0.formulation.rotation(&f), &f);
+        let stress = formulation.stress(&hooke, &formulation.rotation(&f), &f);
         stress * volume * inverse.transpose()
     }
 }
@@ -227,7 +255,8 @@ impl<T: Scalar> Element<T, 1> for Forces<'_, T> {
 impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) = (self.tets.load(simd, slot), self.formulation);
+        let (Batch { inverse, volume, hooke }, formulation) =
+            (self.tets.load::<S, false>(simd, slot), self.formulation);
         let (f, df) = (edges[0] * inverse, edges[1] * inverse);
         let r = formulation.rotation(&f);
         let dr = formulation.rotation_along(&f, &r, &df);
@@ -268,7 +297,7 @@ impl<T: Scalar, const FIBRED: bool> Diagonal<T> for FrozenProduct<'_, T, FIBRED>
     }
 }
 
-impl<T: Scalar> Record<T> for Turning<'_, T> {
+impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
     fn columns(&self) -> usize {
         self.0.linearized_columns()
     }
@@ -276,7 +305,8 @@ impl<T: Scalar> Record<T> for Turning<'_, T> {
     // With the gradients of a body at rest, D gᵀ is √(V μ) F Rᵀ: what it is above √(V μ) I is strain, in the turned frame.
     #[inline(always)]
     fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) = (self.0.load(simd, slot), &self.0.formulation);
+        let (Batch { inverse, volume, hooke }, formulation) =
+            (self.0.load::<S, PLAIN>(simd, slot), self.0.formulation::<PLAIN>());
         let f = *edges * inverse;
         let r = formulation.rotation(&f);
         let (transport, scale) = formulation.transport(&r, &f);
@@ -311,11 +341,12 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.order.add([x], &Forces(self), scratch.sums(self.sum_rows()).0, out);
+        let patches = self.sum(x, scratch);
+        scratch.add_sums(patches, out);
     }
 
     fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
-        Some(self.order.sum([x], &Forces(self), scratch.sums(self.sum_rows()).0))
+        Some(self.sum(x, scratch))
     }
 
     fn linearization_len(&self) -> usize {
