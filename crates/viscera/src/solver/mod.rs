@@ -37,7 +37,7 @@ pub use system::System;
 pub(crate) use ties::{Tie, TieEquations};
 pub use turn::Turn;
 pub(crate) use turn::turn_block;
-pub(crate) use vectors::{add_weighted, dot, dot_of_rows, set_weighted};
+pub(crate) use vectors::{add_weighted, dot, dot_of, dot_of_rows, set_weighted};
 
 use crate::executor::Executor;
 #[cfg(doc)]

@@ -60,7 +60,7 @@ pub(crate) fn add_weighted<T: Scalar>(executor: &Executor, y: &mut [Vec3<T>], m:
 
 /// a·b over a block of nodes.
 #[inline(always)]
-pub(super) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
+pub(crate) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
     let ((a, rest_of_a), (b, rest_of_b)) = (a.as_chunks::<NODES>(), b.as_chunks::<NODES>());
     let mut sums = [T::ZERO; NUMBERS];
     for (a, b) in a.iter().zip(b) {

@@ -4,7 +4,7 @@ use super::Scheme;
 use super::step::Step;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
-use crate::solver::Filter;
+use crate::solver::{Filter, dot_of};
 use crate::stage::Stage;
 
 /// Norms of the forces on free nodes [N].
@@ -133,22 +133,24 @@ impl<T: Scalar> Step<'_, T> {
         let (body, memory) = (&*self.body, &mut *self.memory);
         let (increment, coast, damping, filters) = (&memory.increment, &memory.coast, &memory.damping, &memory.filters);
         let work = |block: usize, NodeBlocks(lacks): NodeBlocks<'_, Vec3<T>>| {
-            let mut squares = [0.0; 4];
-            for (i, lack) in lacks.iter_mut().enumerate() {
-                let node = block * NODE_BLOCK + i;
-                let (external, internal) = (body.external_forces[node], body.state.internal_forces[node]);
-                let inertial = (increment[node] - coast[node]) * (inertia * body.state.masses[node]);
-                *lack = external - internal - damping[node] - inertial;
-                let forces = [*lack, inertial, external, internal];
-                let decided = match &filters[node] {
-                    Filter::Free => forces,
-                    filter => forces.map(|force| filter.apply(force)),
-                };
-                for (square, force) in squares.iter_mut().zip(decided) {
-                    *square += force.squared_norm().to_f64();
-                }
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lacks.len();
+            let external = &body.external_forces[nodes.clone()];
+            let internal = &body.state.internal_forces[nodes.clone()];
+            let mut inertial = [Vec3::ZERO; NODE_BLOCK];
+            let inertial = &mut inertial[..lacks.len()];
+            for (i, node) in nodes.clone().enumerate() {
+                inertial[i] = (increment[node] - coast[node]) * (inertia * body.state.masses[node]);
+                lacks[i] = external[i] - internal[i] - damping[node] - inertial[i];
             }
-            squares
+            let filters = &filters[nodes];
+            if filters.iter().all(|filter| *filter == Filter::Free) {
+                return [lacks, inertial, external, internal].map(|forces| dot_of(forces, forces));
+            }
+            let square = |forces: &[Vec3<T>]| {
+                let decided = forces.iter().zip(filters).map(|(&force, filter)| filter.apply(force));
+                decided.map(|force| force.squared_norm().to_f64()).sum::<f64>()
+            };
+            [lacks, inertial, external, internal].map(square)
         };
         let blocks = node_blocks(increment.len());
         let sums = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|i| a[i] + b[i]);

@@ -10,7 +10,7 @@ use super::step::Step;
 use super::tools::Guess;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
-use crate::solver::Filter;
+use crate::solver::{Filter, dot_of};
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.
 const ASTRAY: f64 = 0.5;
@@ -208,9 +208,13 @@ impl<T: Scalar> Step<'_, T> {
     pub(super) fn work(&self) -> f64 {
         let ImplicitMemory { filters, lack, correction, .. } = &*self.memory;
         let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
-            let nodes = block * NODE_BLOCK..;
-            let free = filters[nodes.clone()].iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
-            free.zip(&correction[nodes]).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lack.len();
+            let (filters, ways) = (&filters[nodes.clone()], &correction[nodes]);
+            if filters.iter().all(|filter| *filter == Filter::Free) {
+                return dot_of(lack, ways);
+            }
+            let free = filters.iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
+            free.zip(ways).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()
         };
         let executor = &self.body.scratch.executor;
         -executor.fold(node_blocks(lack.len()), ReadBlocks(lack), &work, &|a, b| a + b).unwrap_or(0.0)

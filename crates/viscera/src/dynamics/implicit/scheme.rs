@@ -47,6 +47,15 @@ impl Scheme {
         }
     }
 
+    /// Whether a node without forces goes on as fast as it was.
+    pub(super) fn coasts_by_velocity(self, has_past: bool) -> bool {
+        match self {
+            Self::BackwardEuler | Self::EnergyMomentum => true,
+            Self::Bdf2 => !has_past,
+            Self::Newmark { .. } => false,
+        }
+    }
+
     pub(super) fn needs_acceleration(self) -> bool {
         matches!(self, Self::Newmark { .. })
     }

@@ -48,28 +48,34 @@ impl<T: Scalar> Step<'_, T> {
             let acceleration = if scheme.needs_acceleration() { lack[node] / state.masses[node] } else { Vec3::ZERO };
             scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt)
         };
+        let goes_by_velocity = scheme.coasts_by_velocity(state.past.is_known);
         let data = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
         body.scratch.executor.each(parts, data, &|block, ((increment, coast), (coast_velocities, filters))| {
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + coast.0.len();
+            let ends = coast.0.iter_mut().zip(coast_velocities.0.iter_mut());
+            if goes_by_velocity {
+                ends.zip(&state.velocities[nodes.clone()]).for_each(|((coast, end), &v)| (*coast, *end) = (v * dt, v));
+            } else {
+                ends.zip(nodes.clone()).for_each(|((coast, end), node)| {
+                    Coast { increment: *coast, velocity: *end } = free(node);
+                });
+            }
             increment.0.fill(Vec3::ZERO);
-            for i in 0..coast.0.len() {
-                let node = block * NODE_BLOCK + i;
-                // Nearly all are.
-                if state.motions[node] == NodeMotion::Free {
-                    filters.0[i] = Filter::Free;
-                    Coast { increment: coast.0[i], velocity: coast_velocities.0[i] } = free(node);
-                    continue;
-                }
+            filters.0.fill(Filter::Free);
+            let others =
+                state.motions[nodes.clone()].iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
+            for (i, _) in others {
+                let node = nodes.start + i;
                 let position = state.positions[node];
                 let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
                 filters.0[i] = filter;
-                (coast.0[i], coast_velocities.0[i]) = match target {
-                    Some(target) if filter == Filter::Held => (target - position, Vec3::ZERO),
-                    _ => {
-                        let coast = free(node);
-                        let merged = |target: Vec3<T>| filter.merge(coast.increment, target - position);
-                        (target.map_or(coast.increment, merged), coast.velocity)
+                match target {
+                    Some(target) if filter == Filter::Held => {
+                        (coast.0[i], coast_velocities.0[i]) = (target - position, Vec3::ZERO);
                     }
-                };
+                    Some(target) => coast.0[i] = filter.merge(coast.0[i], target - position),
+                    None => {}
+                }
             }
         });
     }
@@ -101,11 +107,21 @@ impl<T: Scalar> Step<'_, T> {
             |block: usize, (NodeBlocks(x), NodeBlocks(v)): (NodeBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| {
                 let mut moved = false;
                 for i in 0..x.len() {
-                    let node = block * NODE_BLOCK + i;
-                    v[i] = end_velocity(memory, numbers, dt, node);
-                    let end = memory.start[node] + memory.increment[node];
+                    let end = memory.start[block * NODE_BLOCK + i] + memory.increment[block * NODE_BLOCK + i];
                     moved |= end != x[i];
                     x[i] = end;
+                }
+                let nodes = block * NODE_BLOCK..block * NODE_BLOCK + v.len();
+                let is_free = memory.filters[nodes.clone()].iter().all(|filter| *filter == Filter::Free);
+                let share = T::from_f64(numbers.velocity / dt);
+                let ways = memory.increment[nodes.clone()].iter().zip(&memory.coast[nodes.clone()]);
+                let free = ways.zip(&memory.coast_velocities[nodes.clone()]);
+                if is_free {
+                    v.iter_mut().zip(free).for_each(|(v, ((&increment, &coast), &velocity))| {
+                        *v = (increment - coast).mul_add(share, velocity);
+                    });
+                } else {
+                    v.iter_mut().zip(nodes).for_each(|(v, node)| *v = end_velocity(memory, numbers, dt, node));
                 }
                 moved
             };
