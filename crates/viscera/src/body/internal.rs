@@ -17,6 +17,24 @@ impl<T: Scalar> SimulatedBody<T> {
         }
     }
 
+    /// The same, and the bound of the highest frequency where the model finds it on the way.
+    pub(crate) fn update_forces_and_bound(&mut self, stages: Stages) {
+        let (state, scratch) = (&mut self.state, &mut self.scratch);
+        if let ([model], false) = (&state.models[..], state.forces_are_current) {
+            let of_tissue = stages.run(Stage::Forces(model.name()), || {
+                let (patches, bound) =
+                    model.sum_forces_and_bound(&state.positions, self.frequency.as_ref(), scratch)?;
+                scratch.write_sums(patches, &mut state.internal_forces);
+                Some(bound)
+            });
+            if let Some(of_tissue) = of_tissue {
+                (state.forces_are_current, self.is_linearized) = (true, false);
+                self.bound_frequency(of_tissue);
+            }
+        }
+        self.update_internal_forces(stages);
+    }
+
     /// Brings internal forces and what products need up to date together, which is less work than one after the other. Where only
     /// the forces are current they are found again: the bits of a step must not depend on who looked at them before.
     pub(crate) fn update_forces_and_linearize(&mut self, stages: Stages) {

@@ -325,18 +325,18 @@ impl<T: Scalar> SimulatedBody<T> {
     /// Bound of ω_max² at the current positions [1/s²].
     pub(crate) fn squared_frequency(&mut self) -> f64 {
         if self.state.squared_frequency.is_none() {
-            self.state.squared_frequency = Some(self.measure_squared_frequency());
+            let of_tissue = self.frequency.squared_frequency(&self.state.positions, &mut self.scratch);
+            self.bound_frequency(of_tissue);
         }
         self.state.squared_frequency.unwrap_or_default()
     }
 
-    fn measure_squared_frequency(&mut self) -> f64 {
-        let state = &self.state;
-        let of_tissue = self.frequency.squared_frequency(&state.positions, &mut self.scratch);
+    /// Keeps the bound for the current positions, of which the tissue's part is known.
+    pub(crate) fn bound_frequency(&mut self, of_tissue: f64) {
         let mut sums = std::mem::take(&mut self.scratch.forces);
         let of_others = self.external_squared_frequency(&mut sums);
         self.scratch.forces = sums;
-        of_tissue + of_others
+        self.state.squared_frequency = Some(of_tissue + of_others);
     }
 }
 

@@ -89,7 +89,7 @@ pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, is_tied: bool, time: f64, g
 /// Advances a body by one sub-step of `dt` [s]. Internal and external forces must be those of its beginning.
 pub fn advance<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
     drift(body, dt, drive, stages);
-    kick(body, dt, drive, stages);
+    kick(body, dt, drive, false, stages);
 }
 
 /// The second half of a sub-step of `dt` [s] and the first half of the next in one, to the same bits, of a body that is
@@ -116,9 +116,13 @@ pub fn drift<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, 
     body.state.positions_changed();
 }
 
-/// The second half: the kick by the forces at the new places.
-pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, stages: Stages) {
-    body.update_internal_forces(stages);
+/// The second half: the kick by the forces at the new places, where the bound of the highest frequency is asked for after the last one.
+pub fn kick<T: Scalar>(body: &mut SimulatedBody<T>, dt: f64, drive: &Drive<'_, T>, is_last: bool, stages: Stages) {
+    if is_last {
+        body.update_forces_and_bound(stages);
+    } else {
+        body.update_internal_forces(stages);
+    }
     // Weights do not change within a step.
     if body.has_changing_forces() {
         stages.run(Stage::Loads, || body.update_external_forces(drive.end, drive.gravity));

@@ -50,11 +50,19 @@ impl<R: Real> Law<R> for StVenantKirchhoff<R> {
         *df * self.second_stress(green_strain(f)) + *f * self.second_stress(d_strain)
     }
 
-    // dF:dP = S:(dFᵀdF) + dE:C:dE with |dE| ≤ ‖F‖ |dF|
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
-        let stress = self.second_stress(green_strain(f)).largest_eigenvalue_bound();
-        let stretch = f.gram().largest_eigenvalue_bound();
+        self.bound_of(f.gram().largest_eigenvalue_bound(), green_strain(f).trace())
+    }
+}
+
+impl<R: Real> StVenantKirchhoff<R> {
+    /// The bound of the stiffness for one of the largest eigenvalue of C, `stretch`, and tr E.
+    ///
+    /// dF:dP = S:(dFᵀdF) + dE:C:dE with |dE| ≤ ‖F‖ |dF|, and S = λ tr E I + μ (C − I).
+    #[inline(always)]
+    pub(crate) fn bound_of(&self, stretch: R, trace: R) -> R {
+        let stress = self.lambda * trace + self.mu * (stretch + stretch.like(-1.0));
         stretch.mul_add(isotropic_bound(self.lambda, self.mu), stress.max(stress.zero_like()))
     }
 }

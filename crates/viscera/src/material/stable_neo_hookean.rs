@@ -76,14 +76,21 @@ impl<R: Real> Law<R> for StableNeoHookean<R> {
 
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
-        let (lambda, mu) = self.rescaled();
-        let one = mu.like(1.0);
-        let (square, cofactor) = (f.squared_norm(), f.cofactor());
+        let cofactor = f.cofactor();
         let determinant = f.columns[0].dot(cofactor.columns[0]);
+        Self::bound_of(self.rescaled(), f.squared_norm(), cofactor.squared_norm(), determinant)
+    }
+}
+
+impl<R: Real> StableNeoHookean<R> {
+    /// The bound of the stiffness for λ', μ', I_C = `square`, ‖cof F‖² = `area` and J.
+    #[inline(always)]
+    pub(crate) fn bound_of((lambda, mu): (R, R), square: R, area: R, determinant: R) -> R {
+        let one = mu.like(1.0);
         let share = one / (square + one);
         let shape = mu * (one - share) + (mu * share.squared() * square).double();
         let pressure = lambda * (determinant - one) - mu * mu.like(0.75);
-        lambda.mul_add(felt_square(cofactor.squared_norm(), determinant, square), shape)
+        lambda.mul_add(felt_square(area, determinant, square), shape)
             + curvature_of_determinant(pressure, determinant, square)
     }
 }

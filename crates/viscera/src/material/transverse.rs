@@ -65,6 +65,14 @@ impl<R: Real> Fibre<R> {
         Sym3::square(self.direction) * (self.stiffness * self.stretch_strain(strain)).double()
     }
 
+    /// The bound of what fibres of 2κ_a = `stiffness` add, for one of the largest eigenvalue of C, `stretch`, and their strain: S = 2κ_a s a0 a0ᵀ,
+    /// whose largest eigenvalue is 2κ_a s or nothing.
+    #[inline(always)]
+    pub(crate) fn bound_of(stiffness: R, stretch: R, strain: R) -> R {
+        let zero = stiffness.zero_like();
+        stretch.mul_add(stiffness.max(zero), (stiffness * strain).max(zero))
+    }
+
     /// 2κ_a, where it stiffens.
     #[inline(always)]
     fn stiffness_bound(&self) -> R {
@@ -145,10 +153,9 @@ impl<R: Real> Law<R> for TransverseStVenantKirchhoff<R> {
 
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
-        let stress = self.fibre.stress(green_strain(f)).largest_eigenvalue_bound();
         let stretch = f.gram().largest_eigenvalue_bound();
-        let fibre = stretch.mul_add(self.fibre.stiffness_bound(), stress.max(stress.zero_like()));
-        self.matrix.stiffness_bound(f) + fibre
+        let strain = green_strain(f).quadratic(self.fibre.direction);
+        self.matrix.stiffness_bound(f) + Fibre::bound_of(self.fibre.stiffness.double(), stretch, strain)
     }
 }
 

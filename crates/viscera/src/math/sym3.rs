@@ -61,6 +61,19 @@ impl<R: Real> Sym3<R> {
         let deviator = self - Self::diagonal(mean);
         mean + (deviator.squared_norm() * mean.like(2.0 / 3.0)).sqrt()
     }
+    /// cof A, symmetric too.
+    #[inline(always)]
+    pub fn cofactor(self) -> Self {
+        let Self { xx, yy, zz, xy, xz, yz } = self;
+        Self {
+            xx: yy * zz - yz * yz,
+            yy: xx * zz - xz * xz,
+            zz: xx * yy - xy * xy,
+            xy: xz * yz - xy * zz,
+            xz: xy * yz - xz * yy,
+            yz: xy * xz - yz * xx,
+        }
+    }
     /// A B A for symmetric A and B: symmetric again.
     #[inline(always)]
     pub fn sandwich(self, middle: Self) -> Self {

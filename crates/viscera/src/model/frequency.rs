@@ -5,6 +5,8 @@
 //! every cell, from above by at most 3 %; under deformation it grows with the law's bound of ∂P/∂F and with the stiffness
 //! 2κ|δ| of the volume penalty.
 
+use std::any::Any;
+
 use crate::material::{Law, LawFamily, LawVisitor, Tissue};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 use crate::mesh::{GaussRule, HexMesh, TetMesh, VolumeMesh};
@@ -21,6 +23,10 @@ pub trait FrequencyBound<T: Scalar>: Send + Sync {
     fn remove(&mut self, cells: &[u32]);
     /// A copy, for snapshots.
     fn clone_box(&self) -> Box<dyn FrequencyBound<T>>;
+    /// Itself, for models that find it on the way of their forces.
+    fn as_any(&self) -> Option<&dyn Any> {
+        None
+    }
 }
 
 /// The bound for a mesh of `tissue` with one density [kg/m³] for all cells or one for each, and the volume-keeping

@@ -7,6 +7,7 @@ pub mod corotational;
 mod error;
 pub mod frequency;
 pub mod hybrid;
+mod kernel_bound;
 pub mod linear_tensor_mass;
 pub mod mass_spring;
 pub mod nodally_integrated;
@@ -42,6 +43,7 @@ pub use tensor_mass::TensorMass;
 pub use total_lagrangian::TotalLagrangian;
 pub use volume_penalty::VolumePenalty;
 
+use self::frequency::FrequencyBound;
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
 use crate::math::{Mat3, Scalar, Vec3};
@@ -62,6 +64,16 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
     /// Sums those forces on copies of the nodes in `scratch`, and says where the copies are: who goes through the nodes next adds them up on
     /// the way. None, and nothing is done, in a model that knows no copies.
     fn sum_forces(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) -> Option<&Patches> {
+        None
+    }
+
+    /// The same, and the bound of ω_max² at `x` [1/s²] on the way. None, and nothing is done, in a model that does not know this `bound`.
+    fn sum_forces_and_bound(
+        &self,
+        _x: &[Vec3<T>],
+        _bound: &dyn FrequencyBound<T>,
+        _scratch: &mut Scratch<T>,
+    ) -> Option<(&Patches, f64)> {
         None
     }
 

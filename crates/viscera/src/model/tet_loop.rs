@@ -1,5 +1,6 @@
 //! The loop over tetrahedra that models share: a kernel with its constants, along the fans of all patches.
 
+use std::any::Any;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub(crate) trait TetConstants: Clone + Send + Sync + 'static {
 }
 
 /// What happens within one tetrahedron, as a function of its edge matrix D = [x1−x0, x2−x0, x3−x0].
-pub(crate) trait TetKernel: TetConstants {
+pub(crate) trait TetKernel: TetConstants + Sized {
     /// Energy W(D) [J].
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
@@ -40,6 +41,15 @@ pub(crate) trait TetKernel: TetConstants {
     }
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
+    /// Forces, and the bound of the highest frequency on the way, of kernels that know both.
+    fn sum_with_bound<'a, T: Scalar>(
+        _tets: &'a TetLoop<T, Self>,
+        _x: &[Vec3<T>],
+        _bound: &dyn Any,
+        _scratch: &mut Scratch<T>,
+    ) -> Option<(&'a Patches, f64)> {
+        None
+    }
     /// Whether [`TetKernel::diagonal`] is written out.
     const HAS_DIAGONAL: bool = false;
     /// The blocks of the stiffness on the diagonal, of corners 0 to 3; three products each, unless the kernel knows better.
@@ -162,13 +172,20 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
 
     /// The constants of the tetrahedra of a slot.
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
+    pub(super) fn load<S: Simd>(&self, simd: S, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
         let block = self.constants.block_of(T::LANES, K::CONSTANTS, slot);
         let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
         for column in 0..K::CONSTANTS {
             constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
         }
         constants
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(super) fn column<S: Simd>(&self, simd: S, slot: usize, column: usize) -> T::Lanes<S> {
+        let block = self.constants.block_of(T::LANES, K::CONSTANTS, slot);
+        T::Lanes::<S>::load(simd, &block[column * T::LANES..])
     }
 
     /// The constants of one tetrahedron.
@@ -248,6 +265,18 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 
     pub(crate) fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
         self.order.sum([x], &Forces(self), scratch.sums(self.sum_rows()).0)
+    }
+
+    /// The same, and the largest of what is measured on the way.
+    pub(super) fn sum_forces_and_measure(
+        &self,
+        x: &[Vec3<T>],
+        measure: &impl Measure<T>,
+        scratch: &mut Scratch<T>,
+    ) -> (&Patches, f64) {
+        let sums = scratch.sums(self.sum_rows()).0;
+        let (patches, largest) = self.order.sum_and_find_largest(x, &Forces(self), measure, sums);
+        (patches, largest.to_f64())
     }
 
     pub(crate) fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {

@@ -125,7 +125,7 @@ impl<T: Scalar> World<T> {
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let is_last = substep == leg.substeps;
             for body in moving(&mut self.bodies).filter(|body| is_last || !body.is_left_alone) {
-                explicit::kick(body, dt, &drive, stages);
+                explicit::kick(body, dt, &drive, is_last, stages);
             }
             self.hold_together(dt, Aim::Velocity, stages);
             self.restrain(stages, |body| body.restore_velocities(dt));

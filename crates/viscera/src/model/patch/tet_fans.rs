@@ -1,7 +1,7 @@
 use fearless_simd::{Simd, dispatch};
 
 use super::fan::{Fan, fans};
-use super::visitor::{Forces, Keep, Largest, Scatter, ScatterBlocks, Visitor, indices};
+use super::visitor::{Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
@@ -195,6 +195,40 @@ impl TetFans {
         &self.patches
     }
 
+    /// The same, and the largest of what `measure` says of each tetrahedron, 0 if there is none above.
+    pub(crate) fn sum_and_find_largest<T: Scalar>(
+        &self,
+        x: &[Vec3<T>],
+        element: &impl Element<T, 1>,
+        measure: &impl Measure<T>,
+        Sums { executor, rows }: Sums<'_, T>,
+    ) -> (&Patches, T) {
+        let data = self.patches.per_patch(&mut rows[..self.patches.rows()], 1);
+        let work = |patch: usize, rows: PerPatch<'_, [T; 4]>| {
+            let ([sums], _) = rows.values.as_chunks_mut() else { return T::ZERO };
+            let mut places = no_rows::<T, 1>();
+            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
+            self.patches.gather(patch, &[x], &mut places);
+            dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], (element, measure), sums))
+        };
+        let largest = executor.fold(self.patches.count(), data, &work, &Real::max);
+        (&self.patches, largest.unwrap_or(T::ZERO))
+    }
+
+    #[inline(always)]
+    fn scatter_and_measure<T: Scalar, S: Simd>(
+        &self,
+        simd: S,
+        patch: usize,
+        places: &PatchRows<T>,
+        (element, measure): (&impl Element<T, 1>, &impl Measure<T>),
+        sums: &mut PatchRows<T>,
+    ) -> T {
+        let mut measuring = Measuring { element, measure, largest: T::Lanes::<S>::splat(simd, T::ZERO) };
+        self.scatter_with(simd, patch, [places], &mut measuring, sums);
+        largest_lane(measuring.largest)
+    }
+
     /// The same for a product at `x`, along the direction that `turn` is on its way to, with masses; gives the curvature along it as well.
     pub(crate) fn sum_product<T: Scalar, E: Element<T, FIELDS>, const FIELDS: usize>(
         &self,
@@ -338,9 +372,7 @@ impl TetFans {
     ) -> T {
         let mut largest = Largest { measure, value: T::Lanes::<S>::splat(simd, T::ZERO) };
         self.walk(simd, patch, [places], &mut largest);
-        let mut lanes = [T::ZERO; MAX_LANES];
-        largest.value.store(&mut lanes);
-        lanes.into_iter().fold(T::ZERO, Real::max)
+        largest_lane(largest.value)
     }
 
     /// Leads `visitor` along the fans of a patch.
@@ -420,6 +452,13 @@ pub(crate) trait Record<T: Scalar>: Sync {
 pub(crate) trait Measure<T: Scalar>: Sync {
     /// The number of each tetrahedron of a slot.
     fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S>;
+}
+
+#[inline(always)]
+fn largest_lane<T: Scalar, S: Simd>(value: impl Lanes<T, S>) -> T {
+    let mut lanes = [T::ZERO; MAX_LANES];
+    value.store(&mut lanes);
+    lanes.into_iter().fold(T::ZERO, Real::max)
 }
 
 /// Sorts fans so that the lanes of a batch are far from each other: neighbours share nodes, and a force that is added to a

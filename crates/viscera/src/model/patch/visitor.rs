@@ -47,6 +47,21 @@ impl<T: Scalar, S: Simd, R: Record<T>> Forces<T, S, 1> for Keep<'_, T, R> {
     }
 }
 
+/// Forces of an element, and the largest of what is measured of it.
+pub(super) struct Measuring<'a, E, M, V> {
+    pub(super) element: &'a E,
+    pub(super) measure: &'a M,
+    pub(super) largest: V,
+}
+
+impl<T: Scalar, S: Simd, E: Element<T, 1>, M: Measure<T>> Forces<T, S, 1> for &mut Measuring<'_, E, M, T::Lanes<S>> {
+    #[inline(always)]
+    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        self.largest = self.largest.max(self.measure.measure(simd, slot, &edges[0]));
+        self.element.forces(simd, slot, edges)
+    }
+}
+
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
 pub(super) struct Scatter<'a, T: Scalar, S: Simd, F> {
     pub(super) simd: S,

@@ -8,9 +8,13 @@
 //!
 //! [f1 f2 f3] += 2 V κ_a s (D b) bᵀ
 
+use std::any::Any;
+
 use super::super::block_table::BlockTable;
-use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
-use crate::material::RestStiffness;
+use super::super::kernel_bound::{BoundedKernel, sum_forces_and_bound};
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop};
+use super::super::{Patches, Scratch};
+use crate::material::{Fibre, RestStiffness, StVenantKirchhoff};
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
 /// Constants: A0 (xx, yy, zz, xy, xz, yz), Vλ, Vμ.
@@ -122,6 +126,15 @@ impl TetConstants for StVenantKirchhoffMetric {
 }
 
 impl TetKernel for StVenantKirchhoffMetric {
+    fn sum_with_bound<'a, T: Scalar>(
+        tets: &'a TetLoop<T, Self>,
+        x: &[Vec3<T>],
+        bound: &dyn Any,
+        scratch: &mut Scratch<T>,
+    ) -> Option<(&'a Patches, f64)> {
+        sum_forces_and_bound(tets, x, bound, scratch)
+    }
+
     const KEEPS_ENERGY: bool = true;
     const HAS_DIAGONAL: bool = true;
 
@@ -153,6 +166,25 @@ impl TetKernel for StVenantKirchhoffMetric {
     }
 }
 
+/// Upper bound of the largest eigenvalue of C, which has those of A0 G: mean + √(⅔) ‖deviator‖.
+#[inline(always)]
+fn stretch_bound<R: Real>(a0: Sym3<R>, g: Sym3<R>) -> R {
+    let m = Mat3::from(a0) * g;
+    let mean = m.trace() * g.xx.like(1.0 / 3.0);
+    let deviator = m - Mat3::diagonal(mean);
+    let square = deviator.contract(deviator.transpose());
+    // Rounding makes it negative at rest.
+    mean + (square.max(square.zero_like()) * mean.like(2.0 / 3.0)).sqrt()
+}
+
+impl BoundedKernel for StVenantKirchhoffMetric {
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
+        let (a0, g) = (metric(c), d.gram());
+        StVenantKirchhoff { lambda: c[6], mu: c[7] }.bound_of(stretch_bound(a0, g), trace_of_strain(a0, g))
+    }
+}
+
 /// Constants: those of [`StVenantKirchhoffMetric`], then b = Dm⁻¹a0 and 2Vκ_a.
 #[derive(Clone, Debug)]
 pub(super) struct TransverseMetric;
@@ -177,6 +209,16 @@ fn fibre_strain<R: Real>(b: Vec3<R>, g: Sym3<R>) -> R {
     (g.quadratic(b) + b.x.like(-1.0)).half()
 }
 
+impl BoundedKernel for TransverseMetric {
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
+        let (a0, g) = (metric(c), d.gram());
+        let stretch = stretch_bound(a0, g);
+        StVenantKirchhoff { lambda: c[6], mu: c[7] }.bound_of(stretch, trace_of_strain(a0, g))
+            + Fibre::bound_of(c[11], stretch, fibre_strain(fibre(c), g))
+    }
+}
+
 impl TetConstants for TransverseMetric {
     const CONSTANTS: usize = 12;
 
@@ -187,6 +229,15 @@ impl TetConstants for TransverseMetric {
 }
 
 impl TetKernel for TransverseMetric {
+    fn sum_with_bound<'a, T: Scalar>(
+        tets: &'a TetLoop<T, Self>,
+        x: &[Vec3<T>],
+        bound: &dyn Any,
+        scratch: &mut Scratch<T>,
+    ) -> Option<(&'a Patches, f64)> {
+        sum_forces_and_bound(tets, x, bound, scratch)
+    }
+
     const KEEPS_ENERGY: bool = true;
     const HAS_DIAGONAL: bool = true;
 

@@ -13,12 +13,16 @@ use self::direct::Direct;
 use self::hex::HexLoop;
 use self::metric::{StVenantKirchhoffMetric, TransverseMetric};
 use self::stable_neo_hookean::StableNeoHookeanMetric;
+use super::frequency::{FrequencyBound, frequency_bound};
+use super::kernel_bound::kernel_bound;
 use super::tet_loop::{TetKernel, TetLoop};
 use super::{
     BlockSink, ForceModel, GenericRecipe, MeanForces, ModelError, ModelInfo, ModelKind, Patches, Precision, Scratch,
     recipe,
 };
-use crate::material::{LawFamily, LawKind, LawVisitor, Tissue};
+use crate::material::{
+    LawFamily, LawKind, LawVisitor, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
+};
 use crate::math::{Mat3, Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
 use crate::solver::Turn;
@@ -85,6 +89,35 @@ impl GenericRecipe for TotalLagrangian {
             _ => law.visit(Build { recipe: self, mesh, scalar: std::marker::PhantomData }),
         }
     }
+
+    /// That of the law, by the constants of the kernel where it has its own.
+    fn bound<T: Precision>(
+        &self,
+        mesh: &VolumeMesh,
+        density: &[f64],
+        keep_volume: f64,
+    ) -> Result<Box<dyn FrequencyBound<T>>, ModelError> {
+        let (tissue, law) = (&self.tissue, self.tissue.kind());
+        let of_law = || frequency_bound(mesh, tissue, density, keep_volume);
+        let VolumeMesh::Tet(tets) = mesh else { return of_law() };
+        let density = |cell: usize| density[if density.len() == 1 { 0 } else { cell }];
+        match law {
+            _ if self.plain || keep_volume > 0.0 => of_law(),
+            LawKind::StVenantKirchhoff => kernel_bound::<T, StVenantKirchhoffMetric, _>(tets, density, |rest| {
+                let constants = StVenantKirchhoffMetric::constants(rest, &tissue.at_rest(rest.cell));
+                (StVenantKirchhoff::from_values(tissue.values(rest.cell)), constants)
+            }),
+            LawKind::TransverseStVenantKirchhoff => kernel_bound::<T, TransverseMetric, _>(tets, density, |rest| {
+                let constants = TransverseMetric::constants(rest, &tissue.at_rest(rest.cell));
+                (TransverseStVenantKirchhoff::from_values(tissue.values(rest.cell)), constants)
+            }),
+            LawKind::StableNeoHookean => kernel_bound::<T, StableNeoHookeanMetric, _>(tets, density, |rest| {
+                let values = tissue.values(rest.cell);
+                (StableNeoHookean::from_values(values), StableNeoHookeanMetric::constants(rest, values))
+            }),
+            _ => of_law(),
+        }
+    }
 }
 
 recipe!(TotalLagrangian);
@@ -145,6 +178,15 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
 
     fn sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
         Some(self.tets.sum_forces(x, scratch))
+    }
+
+    fn sum_forces_and_bound(
+        &self,
+        x: &[Vec3<T>],
+        bound: &dyn FrequencyBound<T>,
+        scratch: &mut Scratch<T>,
+    ) -> Option<(&Patches, f64)> {
+        K::sum_with_bound(&self.tets, x, bound.as_any()?, scratch)
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {

@@ -6,11 +6,15 @@
 //!
 //! because P Dm⁻ᵀ needs F Dm⁻ᵀ = D A0 and cof F Dm⁻ᵀ = cof D / det Dm only. About 125 flops.
 
+use std::any::Any;
+
 use super::super::block_table::BlockTable;
-use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
+use super::super::kernel_bound::{BoundedKernel, sum_forces_and_bound};
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop};
+use super::super::{Patches, Scratch};
 use super::metric::{at_corners, columns_at_corners};
 use crate::material::{LawFamily, StableNeoHookean};
-use crate::math::{Mat3, Real, Scalar, Sym3};
+use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
 /// Constants: A0 (xx, yy, zz, xy, xz, yz), 1/det Dm, Vλ', Vμ'.
 #[derive(Clone, Debug)]
@@ -50,6 +54,18 @@ fn over_squared_determinant<R: Real>(c: &[R]) -> R {
     c[7] * c[6] * c[6]
 }
 
+// ‖cof F‖² = cof A0 : (cof D)ᵀ cof D, as cof F = cof D cof Dm⁻¹.
+impl BoundedKernel for StableNeoHookeanMetric {
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
+        let (a0, cofactor) = (metric(c), d.cofactor());
+        let square = not_negative((*d * a0).contract(*d));
+        let area = not_negative(a0.cofactor().contract(cofactor.gram()));
+        let determinant = d.columns[0].dot(cofactor.columns[0]) * c[6];
+        StableNeoHookean::<R>::bound_of((c[7], c[8]), square, area, determinant)
+    }
+}
+
 impl TetConstants for StableNeoHookeanMetric {
     const CONSTANTS: usize = 9;
 
@@ -60,6 +76,15 @@ impl TetConstants for StableNeoHookeanMetric {
 }
 
 impl TetKernel for StableNeoHookeanMetric {
+    fn sum_with_bound<'a, T: Scalar>(
+        tets: &'a TetLoop<T, Self>,
+        x: &[Vec3<T>],
+        bound: &dyn Any,
+        scratch: &mut Scratch<T>,
+    ) -> Option<(&'a Patches, f64)> {
+        sum_forces_and_bound(tets, x, bound, scratch)
+    }
+
     const HAS_DIAGONAL: bool = true;
 
     // The area vector cof D_i of a face does not change with the corner opposite to it: the pressure adds nothing.
