@@ -3,6 +3,7 @@
 mod dual;
 mod lanes;
 mod mat3;
+mod prefetch;
 mod real;
 pub mod rotation;
 mod rows;
@@ -13,6 +14,7 @@ pub use dual::Dual;
 pub(crate) use lanes::baseline;
 pub use lanes::{Lanes, MAX_LANES, Scalar, dispatch_level, with_level};
 pub use mat3::Mat3;
+pub(crate) use prefetch::prefetch;
 pub use real::Real;
 pub use sym3::Sym3;
 pub use vec3::Vec3;

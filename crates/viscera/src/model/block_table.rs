@@ -1,3 +1,5 @@
+use crate::math::prefetch;
+
 /// A table whose rows lie in blocks of as many rows as a batch has lanes, column after column within a block: a batch of
 /// lanes reads one column of its rows as one contiguous load.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,10 +67,19 @@ impl<V: Copy> BlockTable<V> {
         &self.values[number * size..(number + 1) * size]
     }
 
+    /// The same where the compiler knows the size of the table's blocks: a block is checked once then, and not column by column.
     #[inline(always)]
     pub(crate) fn block_of(&self, lanes: usize, columns: usize, number: usize) -> &[V] {
         let size = lanes * columns;
         &self.values[number * size..][..size]
+    }
+
+    /// Asks for a block that a loop will come to, if there is one.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, lanes: usize, columns: usize, number: usize) {
+        if let Some(block) = self.values.get(number * lanes * columns..(number + 1) * lanes * columns) {
+            prefetch(block);
+        }
     }
 
     /// Blocks of `lanes · columns` entries.

@@ -228,6 +228,11 @@ struct Mean<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 
 impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
     #[inline(always)]
+    fn prefetch(&self, slot: usize) {
+        self.0.constants.prefetch(T::LANES, K::CONSTANTS, slot);
+    }
+
+    #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         K::forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0])
     }

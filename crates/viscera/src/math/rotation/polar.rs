@@ -14,10 +14,10 @@ const POLAR_STEPS: usize = 7;
 /// The rotation R of F = R S that maximises tr(RᵀF) over all rotations: the polar decomposition, with the axis of the
 /// smallest stretch flipped where F is inverted, so that det R = +1.
 ///
-/// Newton's method for the polar factor, X ← ½(X + cof X/det X) from F, without a memory. A stretch σ becomes ½(σ + 1/σ): after the first step none is
-/// below 1, and det X − 1 bounds how far any is above it; the next step squares that. (Rounding makes det X negative where F is nearly flat: such cells
-/// do not arrive.) Tissue that is strained by a fiftieth takes two steps in
-/// single precision, by a third four. Where a lane is inverted, or stretched beyond what the steps reach, all lanes take [`closed`].
+/// Newton's method for the polar factor, X ← ½(X + cof X/det X) from F, without a memory. A stretch σ becomes ½(σ + 1/σ): after the first step
+/// none is below 1, and det X − 1 bounds how far any is above it; the next step squares that. (Rounding makes det X negative where F is nearly
+/// flat: such cells do not arrive.) Tissue that is strained by a fiftieth takes two steps in single precision, by a third four. Where a lane is
+/// inverted, or stretched beyond what the steps reach, all lanes take their closed form.
 ///
 /// Source: Higham, Computing the polar decomposition with applications (1986), section 3.
 #[inline(always)]

@@ -10,7 +10,7 @@ use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
+use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, prefetch};
 use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
@@ -281,6 +281,14 @@ impl<T: Scalar, const FIBRED: bool> FrozenProduct<'_, T, FIBRED> {
 // λ and μ apart.
 impl<T: Scalar, const FIBRED: bool> Element<T, 1> for FrozenProduct<'_, T, FIBRED> {
     #[inline(always)]
+    fn prefetch(&self, slot: usize) {
+        let len = T::LANES * if FIBRED { TURNED_FIBRED } else { TURNED };
+        if let Some(row) = self.0.get(slot * len..(slot + 1) * len) {
+            prefetch(row);
+        }
+    }
+
+    #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         let turned = self.load(simd, slot);
         turned.forces(&(edges[0] * turned.gradients.transpose()))
@@ -314,10 +322,7 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
         let turned = Turned {
             gradients: transport * inverse.transpose() * root,
             ratio: hooke.lambda / hooke.mu,
-            fibre: match hooke.fibre {
-                Some((direction, stiffness)) => Some((r * direction, stiffness / hooke.mu)),
-                None => None,
-            },
+            fibre: hooke.fibre.map(|(direction, stiffness)| (r * direction, stiffness / hooke.mu)),
         };
         for i in 0..3 {
             store(turned.gradients.columns[i], &mut row[3 * i * T::LANES..]);

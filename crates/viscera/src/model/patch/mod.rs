@@ -6,12 +6,14 @@
 
 mod copies;
 mod direction;
+mod element;
 mod fan;
 mod partition;
 mod tet_fans;
 mod visitor;
 
-pub(crate) use tet_fans::{Diagonal, Element, Measure, Record, TetFans};
+pub(crate) use element::{Diagonal, Element, Measure, Record};
+pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
 use self::partition::partition;

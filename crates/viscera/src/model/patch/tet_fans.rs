@@ -1,5 +1,6 @@
 use fearless_simd::{Simd, dispatch};
 
+use super::element::{Diagonal, Element, Measure, Record};
 use super::fan::{Fan, fans};
 use super::visitor::{Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
@@ -423,36 +424,6 @@ impl TetFans {
 
 /// Sums, direction and masses of a product on the copies of the nodes.
 type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, [T; 4]>);
-
-/// What a loop makes of tetrahedra at which the lanes are, as a function of their edges in some nodal arrays.
-pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
-    /// Whether it is worth compiling for each instruction set.
-    const IS_WIDE: bool = true;
-    /// Forces on the corners 1, 2, 3 of the tetrahedra of a slot; that on corner 0 is minus their sum.
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
-}
-
-/// Blocks on the diagonal of a stiffness, as a function of the edges.
-pub(crate) trait Diagonal<T: Scalar>: Sync {
-    /// Whether it is worth compiling for each instruction set.
-    const IS_WIDE: bool = true;
-    /// The blocks of the four corners of the tetrahedra of a slot.
-    fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
-}
-
-/// What a loop keeps of tetrahedra, as a function of their edges, and what it finds of their forces on the way.
-pub(crate) trait Record<T: Scalar>: Sync {
-    /// How many numbers it keeps of each.
-    fn columns(&self) -> usize;
-    /// Writes the block of rows of a slot; gives the forces on the corners 1, 2, 3.
-    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, block: &mut [T]) -> Mat3<T::Lanes<S>>;
-}
-
-/// A number of tetrahedra, as a function of their edges.
-pub(crate) trait Measure<T: Scalar>: Sync {
-    /// The number of each tetrahedron of a slot.
-    fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S>;
-}
 
 #[inline(always)]
 fn largest_lane<T: Scalar, S: Simd>(value: impl Lanes<T, S>) -> T {

@@ -2,7 +2,7 @@
 
 use fearless_simd::Simd;
 
-use super::tet_fans::{Diagonal, Element, Measure, Record};
+use super::element::{Diagonal, Element, Measure, Record};
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
 
@@ -18,6 +18,9 @@ pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
     fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
 }
 
+/// How many slots a loop looks ahead.
+const AHEAD: usize = 4;
+
 /// Who knows the forces of the tetrahedra of a slot.
 pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
     /// Those on the corners 1, 2, 3.
@@ -27,6 +30,7 @@ pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
 impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Forces<T, S, FIELDS> for &E {
     #[inline(always)]
     fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>> {
+        self.prefetch(slot + AHEAD);
         (**self).forces(simd, slot, edges)
     }
 }

@@ -8,7 +8,7 @@ use fearless_simd::{Simd, dispatch};
 
 use super::entity::{Corner, Entity, MAX_COLUMNS};
 use super::tensors::TetTensors;
-use crate::math::{Dual, Lanes, Real, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Dual, Lanes, Real, Scalar, Vec3, baseline, dispatch_level, prefetch};
 use crate::model::BlockSink;
 use crate::model::block_sink::{add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
@@ -130,7 +130,8 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
         out: &mut [[T; 4]],
     ) {
         for batch in batches {
-            let (nodes, stored) = (self.nodes.block(batch), self.stored.block(batch));
+            self.prefetch(batch + AHEAD);
+            let (nodes, stored) = self.block(batch);
             let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
             let linear = E::linear(&c, &corners);
@@ -149,6 +150,23 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
                 continue;
             }
             scatter_corners(simd, forces, self.rows(batch), out);
+        }
+    }
+
+    /// Nodes and stored numbers of a batch.
+    #[inline(always)]
+    fn block(&self, batch: usize) -> (&[u32], &[T]) {
+        (self.nodes.block_of(T::LANES, NODES, batch), self.stored.block_of(T::LANES, E::COLUMNS, batch))
+    }
+
+    /// Asks for what a batch reads that the loop will come to.
+    #[inline(always)]
+    fn prefetch(&self, batch: usize) {
+        if batch < self.stored.rows() / T::LANES {
+            let (nodes, stored) = self.block(batch);
+            prefetch(stored);
+            prefetch(nodes);
+            prefetch(self.rows(batch));
         }
     }
 
@@ -174,7 +192,7 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
         out: &mut [[T; 4]],
     ) {
         for batch in batches {
-            let (nodes, stored) = (self.nodes.block(batch), self.stored.block(batch));
+            let (nodes, stored) = self.block(batch);
             let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
             let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
             let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
@@ -229,6 +247,9 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
         total
     }
 }
+
+/// How many batches a loop looks ahead.
+const AHEAD: usize = 4;
 
 /// How many batches share out as many times their lanes of entities that follow each other.
 const APART: usize = 16;
