@@ -42,24 +42,18 @@ impl<T: Scalar> BlockJacobi<T> {
     /// The `filters` go into the inverses, S P⁻¹ S, so that nothing across them counts.
     pub fn invert(&mut self, masses: &[T], filters: &[Filter<T>], executor: &Executor) {
         let [xx, yy, zz, xy, xz, yz] = self.inverses.each_mut().map(|numbers| NodeBlocks(numbers.as_mut_slice()));
-        let blocks = ReadBlocks(&self.blocks[..]);
-        let data = (((xx, yy), (zz, xy)), ((xz, yz), blocks));
-        executor.each(
-            node_blocks(masses.len()),
-            data,
-            &|block, (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(blocks)))| {
-                let first = block * NODE_BLOCK;
-                for (node, block) in blocks.iter().enumerate() {
-                    let inverse = inverse(block, masses[first + node], &filters[first + node]);
-                    xx.0[node] = inverse.xx;
-                    yy.0[node] = inverse.yy;
-                    zz.0[node] = inverse.zz;
-                    xy.0[node] = inverse.xy;
-                    xz.0[node] = inverse.xz;
-                    yz.0[node] = inverse.yz;
-                }
-            },
-        );
+        let data = (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(&self.blocks[..])));
+        let work = |number: usize, (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(blocks))): Inverting<'_, T>| {
+            let nodes = number * NODE_BLOCK..number * NODE_BLOCK + blocks.len();
+            let mut inverses = [xx.0, yy.0, zz.0, xy.0, xz.0, yz.0];
+            dispatch!(dispatch_level(), _simd => invert_block(blocks, &masses[nodes.clone()], &mut inverses));
+            for (node, filter) in filters[nodes].iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {
+                let [xx, yy, zz, xy, xz, yz] = inverses.each_ref().map(|numbers| numbers[node]);
+                let filtered = filtered(Sym3 { xx, yy, zz, xy, xz, yz }, filter);
+                put(filtered, node, &mut inverses);
+            }
+        };
+        executor.each(node_blocks(masses.len()), data, &work);
     }
 
     /// Takes the inverses of another one, times `factor`, as those of the nodes from `start` on.
@@ -168,30 +162,53 @@ type Starting<'a, T> =
 type Striding<'a, T> =
     ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>));
 
-/// S (`block` + `mass` I)⁻¹ S, or S / `mass` where there is no positive definite inverse.
-fn inverse<T: Scalar>(block: &Mat3<T>, mass: T, filter: &Filter<T>) -> Sym3<T> {
-    let sum = *block + Mat3::diagonal(mass);
-    let inverse = if is_positive_definite(&sum) {
-        sum.inverse()
-    } else if mass > T::ZERO {
-        Mat3::diagonal(T::ONE / mass)
-    } else {
-        Mat3::IDENTITY
-    };
-    let columns = |block: Mat3<T>| Mat3 { columns: block.columns.map(|column| filter.apply(column)) };
-    match filter {
-        Filter::Free => inverse.symmetric_part(),
-        _ => columns(columns(inverse).transpose()).symmetric_part(),
+/// The inverses' six numbers, and the blocks.
+type Inverting<'a, T> = (
+    ((NodeBlocks<'a, T>, NodeBlocks<'a, T>), (NodeBlocks<'a, T>, NodeBlocks<'a, T>)),
+    ((NodeBlocks<'a, T>, NodeBlocks<'a, T>), ReadBlocks<'a, Mat3<T>>),
+);
+
+/// (K + m I)⁻¹, or 1/m where that is not positive definite. The compiler makes whole registers of the second loop, but not of
+/// one that reads the blocks as well.
+#[inline(always)]
+fn invert_block<T: Scalar>(blocks: &[Mat3<T>], masses: &[T], inverses: &mut [&mut [T]; 6]) {
+    for (node, (block, &mass)) in blocks.iter().zip(masses).enumerate() {
+        put(block.symmetric_part() + Sym3::diagonal(mass), node, inverses);
+    }
+    let [xx, yy, zz, xy, xz, yz] = inverses.each_mut().map(|numbers| numbers.iter_mut());
+    for ((((((xx, yy), zz), xy), xz), yz), &mass) in xx.zip(yy).zip(zz).zip(xy).zip(xz).zip(yz).zip(masses) {
+        let (inverse, is_positive) = positive_inverse(Sym3 { xx: *xx, yy: *yy, zz: *zz, xy: *xy, xz: *xz, yz: *yz });
+        let alone = if mass > T::ZERO { T::ONE / mass } else { T::ONE };
+        let or = |inverse: T, alone: T| if is_positive { inverse } else { alone };
+        (*xx, *yy, *zz) = (or(inverse.xx, alone), or(inverse.yy, alone), or(inverse.zz, alone));
+        (*xy, *xz, *yz) = (or(inverse.xy, T::ZERO), or(inverse.xz, T::ZERO), or(inverse.yz, T::ZERO));
     }
 }
 
-/// Sylvester's criterion, with a margin to singularity that is relative to the block's own size.
-pub(super) fn is_positive_definite<T: Scalar>(block: &Mat3<T>) -> bool {
-    let [a, b, _] = block.columns;
-    let third = block.trace() / T::from_f64(3.0);
-    let minor = a.x * b.y - b.x * a.y;
-    let margin = T::from_f64(SINGULAR);
-    a.x > margin * third && minor > margin * third * third && block.determinant() > margin * third * third * third
+#[inline(always)]
+fn put<T: Copy>(block: Sym3<T>, node: usize, numbers: &mut [&mut [T]; 6]) {
+    let Sym3 { xx, yy, zz, xy, xz, yz } = block;
+    for (numbers, number) in numbers.iter_mut().zip([xx, yy, zz, xy, xz, yz]) {
+        numbers[node] = number;
+    }
+}
+
+/// S A S.
+fn filtered<T: Scalar>(block: Sym3<T>, filter: &Filter<T>) -> Sym3<T> {
+    let columns = |block: Mat3<T>| Mat3 { columns: block.columns.map(|column| filter.apply(column)) };
+    columns(columns(Mat3::from(block)).transpose()).symmetric_part()
+}
+
+/// A⁻¹, and whether A is positive definite: without, it means nothing. Sylvester's criterion, with a margin to singularity that is relative to the
+/// block's own size.
+#[inline(always)]
+pub(super) fn positive_inverse<T: Scalar>(block: Sym3<T>) -> (Sym3<T>, bool) {
+    let (size, margin) = (block.trace() / T::from_f64(3.0), T::from_f64(SINGULAR));
+    let unit = block * (T::ONE / size);
+    let cofactor = unit.cofactor();
+    let determinant = unit.xx * cofactor.xx + unit.xy * cofactor.xy + unit.xz * cofactor.xz;
+    let is_positive = (size > T::ZERO) & (unit.xx > margin) & (cofactor.zz > margin) & (determinant > margin);
+    (cofactor * (T::ONE / (size * determinant)), is_positive)
 }
 
 impl<T: Scalar> BlockSink<T> for BlockJacobi<T> {

@@ -1,6 +1,5 @@
 //! Linear systems with a block of three unknowns for every node: block rows, filters, conjugate gradient with its preconditioners,
-//! the seam to factorisations, and
-//! equations that tie nodes together.
+//! the seam to factorisations, and equations that tie nodes together.
 
 mod block_jacobi;
 mod block_matrix;
@@ -40,8 +39,6 @@ pub(crate) use turn::turn_block;
 pub(crate) use vectors::{add_weighted, dot, dot_of, dot_of_rows, set_weighted};
 
 use crate::executor::Executor;
-#[cfg(doc)]
-use crate::executor::NODE_BLOCK;
 use crate::math::{Scalar, Vec3};
 
 /// A symmetric matrix that is known by what it does to a vector.

@@ -1,9 +1,11 @@
 //! The forces of a step, and what they lack to balance.
 
+use fearless_simd::dispatch;
+
 use super::Scheme;
 use super::step::Step;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, dispatch_level};
 use crate::solver::{Filter, dot_of};
 use crate::stage::Stage;
 
@@ -138,19 +140,28 @@ impl<T: Scalar> Step<'_, T> {
             let internal = &body.state.internal_forces[nodes.clone()];
             let mut inertial = [Vec3::ZERO; NODE_BLOCK];
             let inertial = &mut inertial[..lacks.len()];
-            for (i, node) in nodes.clone().enumerate() {
-                inertial[i] = (increment[node] - coast[node]) * (inertia * body.state.masses[node]);
-                lacks[i] = external[i] - internal[i] - damping[node] - inertial[i];
-            }
-            let filters = &filters[nodes];
+            let ways = increment[nodes.clone()].iter().zip(&coast[nodes.clone()]);
+            let masses = ways.zip(&body.state.masses[nodes.clone()]);
+            let (damping, filters) = (&damping[nodes.clone()], &filters[nodes]);
+            let squares = dispatch!(dispatch_level(), _simd => {
+                for (force, ((&increment, &coast), &mass)) in inertial.iter_mut().zip(masses) {
+                    *force = (increment - coast) * (inertia * mass);
+                }
+                let forces = external.iter().zip(internal).zip(damping.iter().zip(&*inertial));
+                for (lack, ((&external, &internal), (&damping, &inertial))) in lacks.iter_mut().zip(forces) {
+                    *lack = external - internal - damping - inertial;
+                }
+                let (lacks, inertial) = (&*lacks, &*inertial);
+                [dot_of(lacks, lacks), dot_of(inertial, inertial), dot_of(external, external), dot_of(internal, internal)]
+            });
             if filters.iter().all(|filter| *filter == Filter::Free) {
-                return [lacks, inertial, external, internal].map(|forces| dot_of(forces, forces));
+                return squares;
             }
             let square = |forces: &[Vec3<T>]| {
                 let decided = forces.iter().zip(filters).map(|(&force, filter)| filter.apply(force));
                 decided.map(|force| force.squared_norm().to_f64()).sum::<f64>()
             };
-            [lacks, inertial, external, internal].map(square)
+            [square(lacks), square(inertial), square(external), square(internal)]
         };
         let blocks = node_blocks(increment.len());
         let sums = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|i| a[i] + b[i]);

@@ -180,7 +180,8 @@ fn set_stiffness<T: Scalar>(
 /// ε |K_pp| |x_p| over all nodes, in the Euclidean norm: the forces that rounding of the positions makes.
 fn rounding<T: Scalar>(diagonal: &[Mat3<T>], positions: &[Vec3<T>], executor: &Executor) -> f64 {
     let data = (ReadBlocks(diagonal), ReadBlocks(positions));
-    let square = |(block, x): (&Mat3<T>, &Vec3<T>)| (block.trace().to_f64() / 3.0 * x.norm().to_f64()).powi(2);
+    let square =
+        |(block, x): (&Mat3<T>, &Vec3<T>)| (block.trace().to_f64() / 3.0).powi(2) * x.cast::<f64>().squared_norm();
     let work = |_, (ReadBlocks(blocks), ReadBlocks(x)): (ReadBlocks<'_, Mat3<T>>, ReadBlocks<'_, Vec3<T>>)| {
         blocks.iter().zip(x).map(square).sum::<f64>()
     };

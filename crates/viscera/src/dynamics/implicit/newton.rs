@@ -1,5 +1,7 @@
 //! Newton's method for the equations of a step, or one iteration of it.
 
+use fearless_simd::dispatch;
+
 use super::ImplicitReport;
 use super::balance::Balance;
 use super::correction::Solve;
@@ -9,7 +11,7 @@ use super::potential::Settling;
 use super::step::Step;
 use super::tools::Guess;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, dispatch_level};
 use crate::solver::{Filter, dot_of};
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.
@@ -211,7 +213,7 @@ impl<T: Scalar> Step<'_, T> {
             let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lack.len();
             let (filters, ways) = (&filters[nodes.clone()], &correction[nodes]);
             if filters.iter().all(|filter| *filter == Filter::Free) {
-                return dot_of(lack, ways);
+                return dispatch!(dispatch_level(), _simd => dot_of(lack, ways));
             }
             let free = filters.iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));
             free.zip(ways).map(|(lack, &way)| lack.dot(way).to_f64()).sum::<f64>()

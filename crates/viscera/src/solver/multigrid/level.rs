@@ -3,7 +3,7 @@ use super::level_matrix::LevelMatrix;
 use super::skyline::Skyline;
 use super::smoother::{Chebyshev, Smoothed, Vectors};
 use crate::math::{Mat3, Scalar, Vec3};
-use crate::solver::block_jacobi::is_positive_definite;
+use crate::solver::block_jacobi::positive_inverse;
 
 /// A lattice, its matrix, and what corrects on it.
 #[derive(Clone, Debug)]
@@ -110,8 +110,9 @@ pub(super) fn correct<T: Scalar>(levels: &mut [Level<T>], rounds: u32) {
 /// The inverse of a block on the diagonal; where that is not positive, of a multiple of the identity that is as large, and zero
 /// where there is nothing.
 fn inverted<T: Scalar>(block: &Mat3<T>) -> Mat3<T> {
-    if is_positive_definite(block) {
-        return block.inverse();
+    let (inverse, is_positive) = positive_inverse(block.symmetric_part());
+    if is_positive {
+        return Mat3::from(inverse);
     }
     let size = block.squared_norm().sqrt();
     if size > T::ZERO { Mat3::diagonal(T::ONE / size) } else { Mat3::ZERO }
