@@ -7,7 +7,7 @@ use std::sync::Arc;
 use fearless_simd::{Simd, dispatch};
 
 use super::batch::{Batch, MAX_PARAMETERS, Point};
-use super::rest::{Neighbourhood, Rest};
+use super::rest::{Neighbour, Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
 use crate::math::{Mat3, Scalar, Vec3, dispatch_level};
 use crate::mesh::TetMesh;
@@ -39,8 +39,8 @@ pub(super) struct NodalPoints<T: Scalar, L> {
     removed: Vec<bool>,
     /// Points that have lost a cell and are not written yet; none, between calls.
     touched: Vec<bool>,
-    /// Memory for the sums of a point: cuts ask for none.
-    sums: Vec<(Vec3<f64>, f64)>,
+    /// Memory for the neighbours of a point: cuts ask for none.
+    around: Vec<Neighbour>,
     law: PhantomData<L>,
 }
 
@@ -56,7 +56,7 @@ impl<T: Scalar, L> Clone for NodalPoints<T, L> {
             rest: Arc::clone(&self.rest),
             removed: self.removed.clone(),
             touched: self.touched.clone(),
-            sums: self.sums.clone(),
+            around: self.around.clone(),
             law: PhantomData,
         }
     }
@@ -81,7 +81,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
             rest: Arc::new(rest),
             removed: vec![false; mesh.cells.len()],
             touched: vec![false; points.len()],
-            sums: vec![(Vec3::ZERO, 0.0); longest],
+            around: vec![Neighbour::new(0); longest],
             law: PhantomData,
         };
         points.chunks(T::LANES).for_each(|batch| model.push_batch(batch));
@@ -119,20 +119,21 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         let end = self.starts[row / T::LANES + 1] as usize;
         let node = |entry: usize| self.nodes[(first + entry) * T::LANES + lane];
         let length = 1 + (1..end - first).take_while(|&entry| node(entry) != node(0)).count();
-        let sums = &mut self.sums[..length];
-        let volume = self.rest.weigh(point, &self.removed, node, sums);
+        let around = &mut self.around[..length];
+        around.iter_mut().enumerate().for_each(|(entry, neighbour)| *neighbour = Neighbour::new(node(entry)));
+        let volume = self.rest.weigh(point, &self.removed, around);
         let is_padding = row != point;
         let (share, weight) = (self.rest.share(point), if is_padding { 0.0 } else { 1.0 });
         *self.constants.get_mut(row, 0) = T::from_f64(weight * volume);
         *self.constants.get_mut(row, 1) = T::from_f64(weight * share * volume);
-        for (entry, &(sum, spring)) in sums.iter().enumerate() {
+        for (entry, &Neighbour { gradient, spring, .. }) in around.iter().enumerate() {
             let entry = first + entry;
             let spring = if entry == first { 0.0 } else { weight * share * spring };
             self.springs[entry * T::LANES + lane] = T::from_f64(spring);
             // A point that has lost all its cells keeps its gradients: its deformation stays as harmless as it was.
             if volume > 0.0 {
                 for axis in 0..3 {
-                    self.gradients[(3 * entry + axis) * T::LANES + lane] = T::from_f64(sum[axis] / volume);
+                    self.gradients[(3 * entry + axis) * T::LANES + lane] = T::from_f64(gradient[axis] / volume);
                 }
             }
         }

@@ -113,18 +113,10 @@ impl Rest {
         self.shares[self.points[point].tissue as usize]
     }
 
-    /// V_a of a point without the cells that are `removed`; and of each entry of `sums`, which stands for the node that
-    /// `neighbour` gives, V_a g_ab and −Σ_e V_e ∇N_a·∇N_b.
-    pub(super) fn weigh(
-        &self,
-        point: usize,
-        removed: &[bool],
-        neighbour: impl Fn(usize) -> u32,
-        sums: &mut [(Vec3<f64>, f64)],
-    ) -> f64 {
+    /// V_a of a point without the cells that are `removed`; sums up what they make of the points `around` it.
+    pub(super) fn weigh(&self, point: usize, removed: &[bool], around: &mut [Neighbour]) -> f64 {
         let Point { node, tissue } = self.points[point];
         let mut volume = 0.0;
-        sums.fill((Vec3::ZERO, 0.0));
         for cell in self.cells_at(node).filter(|&cell| !removed[cell] && self.tissues[cell] == tissue) {
             let rest = RestTet::measure(&self.mesh, cell);
             let share = rest.volume / 4.0;
@@ -133,13 +125,30 @@ impl Rest {
             let own =
                 corners.iter().zip(gradients).find(|(corner, _)| **corner == node).map_or(Vec3::ZERO, |(_, own)| own);
             for (corner, gradient) in corners.into_iter().zip(gradients) {
-                if let Some(entry) = (0..sums.len()).find(|&entry| neighbour(entry) == corner) {
-                    sums[entry].0 += gradient * share;
-                    sums[entry].1 -= gradient.dot(own) * rest.volume;
+                if let Some(neighbour) = around.iter_mut().find(|neighbour| neighbour.node == corner) {
+                    neighbour.gradient += gradient * share;
+                    neighbour.spring -= gradient.dot(own) * rest.volume;
                 }
             }
         }
         volume
+    }
+}
+
+/// A node that a point has to do with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Neighbour {
+    pub(super) node: u32,
+    /// V_a g_ab.
+    pub(super) gradient: Vec3<f64>,
+    /// −Σ_e V_e ∇N_a·∇N_b.
+    pub(super) spring: f64,
+}
+
+impl Neighbour {
+    /// One that no cell has counted yet.
+    pub(super) fn new(node: u32) -> Self {
+        Self { node, gradient: Vec3::ZERO, spring: 0.0 }
     }
 }
 
