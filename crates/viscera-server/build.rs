@@ -25,8 +25,12 @@ fn main() {
     }
     let page = match env::var_os("VISCERA_PAGE") {
         Some(given) if given.is_empty() => Err("VISCERA_PAGE was empty when the program was built.".to_owned()),
-        Some(given) => Ok(PathBuf::from(given)),
-        None => build(&web, &out),
+        Some(given) => {
+            println!("cargo:rerun-if-changed={}", Path::new(&given).display());
+            Ok(PathBuf::from(given))
+        }
+        // Not to be watched: it is newer than the run that made it, and the program was compiled anew at every start.
+        None => build(&web, &out).inspect_err(|_| watch_programs()),
     };
     let (page, missing) = match page {
         Ok(page) => (Some(page), None),
@@ -37,7 +41,6 @@ fn main() {
     };
     let mut files = Vec::new();
     if let Some(page) = &page {
-        println!("cargo:rerun-if-changed={}", page.display());
         list(page, &mut files).expect("the page that was just built can be read");
         files.sort();
     }
@@ -85,6 +88,15 @@ fn build(web: &Path, out: &Path) -> Result<PathBuf, String> {
     npm(&copy, &["run", "build"])?;
     let page = copy.join("dist");
     if page.join("index.html").exists() { Ok(page) } else { Err("`npm run build` made no page.".into()) }
+}
+
+/// Builds the page when there is something new among the programs: Node.js, perhaps.
+fn watch_programs() {
+    println!("cargo:rerun-if-env-changed=PATH");
+    let path = env::var_os("PATH").unwrap_or_default();
+    for folder in env::split_paths(&path).filter(|folder| folder.is_dir()) {
+        println!("cargo:rerun-if-changed={}", folder.display());
+    }
 }
 
 fn npm(folder: &Path, arguments: &[&str]) -> Result<(), String> {

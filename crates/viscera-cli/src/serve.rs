@@ -34,7 +34,7 @@ pub(crate) fn serve(arguments: &ServeArguments) -> Result<(), Failure> {
     }
     if let Some(reason) = server.missing_page() {
         terminal::complain(&format!(
-            "this program was built without its page: {reason} Install Node.js 20 or newer with npm, and build it again"
+            "this program was built without its page: {reason} Install Node.js 20.19 or newer with npm, and build it again"
         ));
     } else if !arguments.no_open && has_desktop() {
         // Where that fails, the address stands above.

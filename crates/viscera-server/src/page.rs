@@ -49,7 +49,7 @@ fn without_page(reason: &str) -> String {
         "<!doctype html><html lang=en><meta charset=utf-8><title>Viscera</title>\
          <body style='font:16px/1.5 system-ui;max-width:40em;margin:4em auto;padding:0 1em'>\
          <h1>Viscera runs, but was built without its page</h1><p>{reason}</p>\
-         <p>Install Node.js 20 or newer with npm, and build the program again: <code>cargo run --release</code>. The session itself is \
+         <p>Install Node.js 20.19 or newer with npm, and build the program again: <code>cargo run --release</code>. The session itself is \
          served at <code>/ws</code> all the same.</p>"
     )
 }
