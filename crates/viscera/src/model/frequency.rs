@@ -13,7 +13,7 @@ use crate::mesh::{GaussRule, HexMesh, TetMesh, VolumeMesh};
 
 use super::block_table::BlockTable;
 use super::tet_loop::{RestTet, TetConstants, TetLoop, TetMeasure};
-use super::{ModelError, Scratch};
+use super::{ModelError, Patches, Scratch};
 
 /// Bounds ω_max² of a body.
 pub trait FrequencyBound<T: Scalar>: Send + Sync {
@@ -23,8 +23,14 @@ pub trait FrequencyBound<T: Scalar>: Send + Sync {
     fn remove(&mut self, cells: &[u32]);
     /// A copy, for snapshots.
     fn clone_box(&self) -> Box<dyn FrequencyBound<T>>;
-    /// Itself, for models that find it on the way of their forces.
-    fn as_any(&self) -> Option<&dyn Any> {
+    /// Sums the forces of `tets`, and gives the bound at `x` [m] on the way. None, and nothing is done, where those are not the tetrahedra whose
+    /// bound it is, or it has to be found alone.
+    fn sum_forces<'a>(
+        &self,
+        _tets: &'a dyn Any,
+        _x: &[Vec3<T>],
+        _scratch: &mut Scratch<T>,
+    ) -> Option<(&'a Patches, f64)> {
         None
     }
 }

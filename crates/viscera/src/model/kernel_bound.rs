@@ -75,8 +75,9 @@ impl<T: Scalar, K: BoundedKernel> FrequencyBound<T> for TetLoop<T, KernelBound<K
         Box::new(self.clone())
     }
 
-    fn as_any(&self) -> Option<&dyn Any> {
-        Some(self)
+    fn sum_forces<'a>(&self, tets: &'a dyn Any, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<(&'a Patches, f64)> {
+        let tets = tets.downcast_ref::<TetLoop<T, K>>()?;
+        Some(tets.sum_forces_and_measure(x, &Along { tets, bound: self }, scratch))
     }
 }
 
@@ -92,17 +93,6 @@ impl<T: Scalar, K: BoundedKernel> Measure<T> for Along<'_, T, K> {
         let constants = self.tets.load(simd, slot);
         self.bound.column(simd, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], edges)
     }
-}
-
-/// Sums the forces of `tets`, and finds the `bound`, which has to be one of the same mesh.
-pub(super) fn sum_forces_and_bound<'a, T: Scalar, K: BoundedKernel>(
-    tets: &'a TetLoop<T, K>,
-    x: &[Vec3<T>],
-    bound: &dyn Any,
-    scratch: &mut Scratch<T>,
-) -> Option<(&'a Patches, f64)> {
-    let bound = bound.downcast_ref::<TetLoop<T, KernelBound<K>>>()?;
-    Some(tets.sum_forces_and_measure(x, &Along { tets, bound }, scratch))
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The loop over tetrahedra that models share: a kernel with its constants, along the fans of all patches.
 
-use std::any::Any;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -27,7 +26,7 @@ pub(crate) trait TetConstants: Clone + Send + Sync + 'static {
 }
 
 /// What happens within one tetrahedron, as a function of its edge matrix D = [x1−x0, x2−x0, x3−x0].
-pub(crate) trait TetKernel: TetConstants + Sized {
+pub(crate) trait TetKernel: TetConstants {
     /// Energy W(D) [J].
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
@@ -41,15 +40,6 @@ pub(crate) trait TetKernel: TetConstants + Sized {
     }
     /// Derivative of [`TetKernel::forces`] along `dd`.
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R>;
-    /// Forces, and the bound of the highest frequency on the way, of kernels that know both.
-    fn sum_with_bound<'a, T: Scalar>(
-        _tets: &'a TetLoop<T, Self>,
-        _x: &[Vec3<T>],
-        _bound: &dyn Any,
-        _scratch: &mut Scratch<T>,
-    ) -> Option<(&'a Patches, f64)> {
-        None
-    }
     /// Whether [`TetKernel::diagonal`] is written out.
     const HAS_DIAGONAL: bool = false;
     /// The blocks of the stiffness on the diagonal, of corners 0 to 3; three products each, unless the kernel knows better.

@@ -154,7 +154,7 @@ impl<T: Scalar> Step<'_, T> {
                 let (lacks, inertial) = (&*lacks, &*inertial);
                 [dot_of(lacks, lacks), dot_of(inertial, inertial), dot_of(external, external), dot_of(internal, internal)]
             });
-            if filters.iter().all(|filter| *filter == Filter::Free) {
+            if Filter::are_free(filters) {
                 return squares;
             }
             let square = |forces: &[Vec3<T>]| {

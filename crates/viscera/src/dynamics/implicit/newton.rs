@@ -212,7 +212,7 @@ impl<T: Scalar> Step<'_, T> {
         let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
             let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lack.len();
             let (filters, ways) = (&filters[nodes.clone()], &correction[nodes]);
-            if filters.iter().all(|filter| *filter == Filter::Free) {
+            if Filter::are_free(filters) {
                 return dispatch!(dispatch_level(), _simd => dot_of(lack, ways));
             }
             let free = filters.iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));

@@ -112,7 +112,7 @@ impl<T: Scalar> Step<'_, T> {
                     x[i] = end;
                 }
                 let nodes = block * NODE_BLOCK..block * NODE_BLOCK + v.len();
-                let is_free = memory.filters[nodes.clone()].iter().all(|filter| *filter == Filter::Free);
+                let is_free = Filter::are_free(&memory.filters[nodes.clone()]);
                 let share = T::from_f64(numbers.velocity / dt);
                 let ways = memory.increment[nodes.clone()].iter().zip(&memory.coast[nodes.clone()]);
                 let free = ways.zip(&memory.coast_velocities[nodes.clone()]);

@@ -8,12 +8,9 @@
 //!
 //! [f1 f2 f3] += 2 V κ_a s (D b) bᵀ
 
-use std::any::Any;
-
 use super::super::block_table::BlockTable;
-use super::super::kernel_bound::{BoundedKernel, sum_forces_and_bound};
-use super::super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop};
-use super::super::{Patches, Scratch};
+use super::super::kernel_bound::BoundedKernel;
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
 use crate::material::{Fibre, RestStiffness, StVenantKirchhoff};
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
@@ -126,15 +123,6 @@ impl TetConstants for StVenantKirchhoffMetric {
 }
 
 impl TetKernel for StVenantKirchhoffMetric {
-    fn sum_with_bound<'a, T: Scalar>(
-        tets: &'a TetLoop<T, Self>,
-        x: &[Vec3<T>],
-        bound: &dyn Any,
-        scratch: &mut Scratch<T>,
-    ) -> Option<(&'a Patches, f64)> {
-        sum_forces_and_bound(tets, x, bound, scratch)
-    }
-
     const KEEPS_ENERGY: bool = true;
     const HAS_DIAGONAL: bool = true;
 
@@ -229,15 +217,6 @@ impl TetConstants for TransverseMetric {
 }
 
 impl TetKernel for TransverseMetric {
-    fn sum_with_bound<'a, T: Scalar>(
-        tets: &'a TetLoop<T, Self>,
-        x: &[Vec3<T>],
-        bound: &dyn Any,
-        scratch: &mut Scratch<T>,
-    ) -> Option<(&'a Patches, f64)> {
-        sum_forces_and_bound(tets, x, bound, scratch)
-    }
-
     const KEEPS_ENERGY: bool = true;
     const HAS_DIAGONAL: bool = true;
 

@@ -186,7 +186,7 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         bound: &dyn FrequencyBound<T>,
         scratch: &mut Scratch<T>,
     ) -> Option<(&Patches, f64)> {
-        K::sum_with_bound(&self.tets, x, bound.as_any()?, scratch)
+        bound.sum_forces(&self.tets, x, scratch)
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {

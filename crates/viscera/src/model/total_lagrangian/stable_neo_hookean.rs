@@ -6,15 +6,12 @@
 //!
 //! because P Dm⁻ᵀ needs F Dm⁻ᵀ = D A0 and cof F Dm⁻ᵀ = cof D / det Dm only. About 125 flops.
 
-use std::any::Any;
-
 use super::super::block_table::BlockTable;
-use super::super::kernel_bound::{BoundedKernel, sum_forces_and_bound};
-use super::super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop};
-use super::super::{Patches, Scratch};
+use super::super::kernel_bound::BoundedKernel;
+use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
 use super::metric::{at_corners, columns_at_corners};
 use crate::material::{LawFamily, StableNeoHookean};
-use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
+use crate::math::{Mat3, Real, Scalar, Sym3};
 
 /// Constants: A0 (xx, yy, zz, xy, xz, yz), 1/det Dm, Vλ', Vμ'.
 #[derive(Clone, Debug)]
@@ -76,15 +73,6 @@ impl TetConstants for StableNeoHookeanMetric {
 }
 
 impl TetKernel for StableNeoHookeanMetric {
-    fn sum_with_bound<'a, T: Scalar>(
-        tets: &'a TetLoop<T, Self>,
-        x: &[Vec3<T>],
-        bound: &dyn Any,
-        scratch: &mut Scratch<T>,
-    ) -> Option<(&'a Patches, f64)> {
-        sum_forces_and_bound(tets, x, bound, scratch)
-    }
-
     const HAS_DIAGONAL: bool = true;
 
     // The area vector cof D_i of a face does not change with the corner opposite to it: the pressure adds nothing.
