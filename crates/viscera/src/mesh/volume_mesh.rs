@@ -76,8 +76,9 @@ impl<const CORNERS: usize, const FACE: usize> Mesh<CORNERS, FACE> {
 impl TetMesh {
     /// Edge matrix [x1−x0, x2−x0, x3−x0] of a cell [m].
     pub fn edge_matrix(&self, cell: usize) -> Mat3<f64> {
-        let [a, b, c, d] = self.corners(cell);
-        Mat3::from_columns(b - a, c - a, d - a)
+        let [a, b, c, d] = self.cells[cell];
+        let at = |node: u32| self.nodes[node as usize];
+        Mat3::from_columns(at(b) - at(a), at(c) - at(a), at(d) - at(a))
     }
 
     /// Signed volume of a cell [m³].

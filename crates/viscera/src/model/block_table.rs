@@ -74,6 +74,13 @@ impl<V: Copy> BlockTable<V> {
         &self.values[number * size..][..size]
     }
 
+    /// The same, to be written.
+    #[inline(always)]
+    pub(crate) fn block_of_mut(&mut self, lanes: usize, columns: usize, number: usize) -> &mut [V] {
+        let size = lanes * columns;
+        &mut self.values[number * size..][..size]
+    }
+
     /// Asks for a block that a loop will come to, if there is one.
     #[inline(always)]
     pub(crate) fn prefetch(&self, lanes: usize, columns: usize, number: usize) {

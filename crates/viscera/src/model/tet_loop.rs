@@ -325,8 +325,9 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
 
 /// [x1−x0, x2−x0, x3−x0] of a tetrahedron.
 pub(crate) fn edge_matrix<R: Real>(x: &[Vec3<R>], corners: [u32; 4]) -> Mat3<R> {
-    let [a, b, c, d] = corners.map(|node| x[node as usize]);
-    Mat3::from_columns(b - a, c - a, d - a)
+    let [a, b, c, d] = corners;
+    let at = |node: u32| x[node as usize];
+    Mat3::from_columns(at(b) - at(a), at(c) - at(a), at(d) - at(a))
 }
 
 /// Places of one corner of a batch; `nodes` holds the corners of the batch, corner after corner.

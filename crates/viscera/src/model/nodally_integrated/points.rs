@@ -81,7 +81,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
             rest: Arc::new(rest),
             removed: vec![false; mesh.cells.len()],
             touched: vec![false; points.len()],
-            around: vec![Neighbour::new(0); longest],
+            around: vec![Neighbour::UNCOUNTED; longest],
             law: PhantomData,
         };
         points.chunks(T::LANES).for_each(|batch| model.push_batch(batch));
@@ -120,13 +120,13 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         let node = |entry: usize| self.nodes[(first + entry) * T::LANES + lane];
         let length = 1 + (1..end - first).take_while(|&entry| node(entry) != node(0)).count();
         let around = &mut self.around[..length];
-        around.iter_mut().enumerate().for_each(|(entry, neighbour)| *neighbour = Neighbour::new(node(entry)));
+        around.fill(Neighbour::UNCOUNTED);
         let volume = self.rest.weigh(point, &self.removed, around);
         let is_padding = row != point;
         let (share, weight) = (self.rest.share(point), if is_padding { 0.0 } else { 1.0 });
         *self.constants.get_mut(row, 0) = T::from_f64(weight * volume);
         *self.constants.get_mut(row, 1) = T::from_f64(weight * share * volume);
-        for (entry, &Neighbour { gradient, spring, .. }) in around.iter().enumerate() {
+        for (entry, &Neighbour { gradient, spring }) in around.iter().enumerate() {
             let entry = first + entry;
             let spring = if entry == first { 0.0 } else { weight * share * spring };
             self.springs[entry * T::LANES + lane] = T::from_f64(spring);

@@ -11,6 +11,8 @@ use crate::model::tet_loop::RestTet;
 pub(super) struct Rest {
     pub(super) mesh: TetMesh,
     cells_at_nodes: (Vec<u32>, Vec<u32>),
+    /// Where the corners of those cells stand among the nodes around the node's point of that tissue: a cut would look for them.
+    places: Vec<[u32; 4]>,
     /// Which tissue a cell is of.
     tissues: Vec<u32>,
     /// A cell of each tissue.
@@ -47,9 +49,10 @@ impl Rest {
         let cells = mesh.cells.len();
         (0..cells).try_for_each(|cell| RestTet::new(mesh, cell).map(|_| ()))?;
         let (tissues, examples) = kinds_of_tissue(cells, tissue);
-        let rest = Self {
+        let mut rest = Self {
             mesh: TetMesh::new(mesh.nodes.clone(), mesh.cells.clone()),
             cells_at_nodes: cells_of_nodes(mesh),
+            places: Vec::new(),
             shares: examples.iter().map(|&cell| share(cell)).collect(),
             tissues,
             examples,
@@ -58,10 +61,17 @@ impl Rest {
         };
         let mut neighbourhoods = Vec::new();
         for node in 0..mesh.nodes.len() as u32 {
-            let mut around: Vec<u32> = rest.cells_at(node).map(|cell| rest.tissues[cell]).collect();
+            let mut around: Vec<u32> = rest.cells_at(node).map(|(_, cell)| rest.tissues[cell]).collect();
             around.sort_unstable();
             around.dedup();
             neighbourhoods.extend(around.into_iter().map(|tissue| rest.neighbourhood(Point { node, tissue })));
+        }
+        rest.places = vec![[0; 4]; rest.cells_at_nodes.1.len()];
+        for Neighbourhood { point, nodes } in &neighbourhoods {
+            let place = |corner| nodes.iter().position(|&node| node == corner).unwrap_or_default() as u32;
+            let found: Vec<_> =
+                rest.cells_around(*point).map(|(at, cell)| (at, rest.mesh.cells[cell].map(place))).collect();
+            found.into_iter().for_each(|(at, places)| rest.places[at] = places);
         }
         Ok((rest, neighbourhoods))
     }
@@ -78,19 +88,23 @@ impl Rest {
     }
 
     fn neighbourhood(&self, point: Point) -> Neighbourhood {
-        let cells = self.cells_at(point.node).filter(|&cell| self.tissues[cell] == point.tissue);
-        let mut nodes: Vec<u32> =
-            cells.flat_map(|cell| self.mesh.cells[cell]).filter(|&other| other != point.node).collect();
+        let corners = self.cells_around(point).flat_map(|(_, cell)| self.mesh.cells[cell]);
+        let mut nodes: Vec<u32> = corners.filter(|&other| other != point.node).collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes.insert(0, point.node);
         Neighbourhood { point, nodes }
     }
 
-    fn cells_at(&self, node: u32) -> impl Iterator<Item = usize> + '_ {
+    /// The cells at a node, each with where it stands among those of all nodes.
+    fn cells_at(&self, node: u32) -> impl Iterator<Item = (usize, usize)> + '_ {
         let (starts, cells) = &self.cells_at_nodes;
-        let span = starts[node as usize] as usize..starts[node as usize + 1] as usize;
-        cells[span].iter().map(|&cell| cell as usize)
+        (starts[node as usize] as usize..starts[node as usize + 1] as usize).map(|at| (at, cells[at] as usize))
+    }
+
+    /// The same for those of a point's tissue.
+    fn cells_around(&self, point: Point) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.cells_at(point.node).filter(move |&(_, cell)| self.tissues[cell] == point.tissue)
     }
 
     /// The points of a cell's corners.
@@ -115,30 +129,27 @@ impl Rest {
 
     /// V_a of a point without the cells that are `removed`; sums up what they make of the points `around` it.
     pub(super) fn weigh(&self, point: usize, removed: &[bool], around: &mut [Neighbour]) -> f64 {
-        let Point { node, tissue } = self.points[point];
         let mut volume = 0.0;
-        for cell in self.cells_at(node).filter(|&cell| !removed[cell] && self.tissues[cell] == tissue) {
+        for (at, cell) in self.cells_around(self.points[point]).filter(|&(_, cell)| !removed[cell]) {
             let rest = RestTet::measure(&self.mesh, cell);
             let share = rest.volume / 4.0;
             volume += share;
-            let (corners, gradients) = (self.mesh.cells[cell], rest.gradients());
-            let own =
-                corners.iter().zip(gradients).find(|(corner, _)| **corner == node).map_or(Vec3::ZERO, |(_, own)| own);
-            for (corner, gradient) in corners.into_iter().zip(gradients) {
-                if let Some(neighbour) = around.iter_mut().find(|neighbour| neighbour.node == corner) {
-                    neighbour.gradient += gradient * share;
-                    neighbour.spring -= gradient.dot(own) * rest.volume;
-                }
+            let (places, gradients) = (self.places[at], rest.gradients());
+            // The point's own node stands first.
+            let own = places.iter().zip(gradients).find(|(place, _)| **place == 0).map_or(Vec3::ZERO, |(_, own)| own);
+            for (place, gradient) in places.into_iter().zip(gradients) {
+                let neighbour = &mut around[place as usize];
+                neighbour.gradient += gradient * share;
+                neighbour.spring -= gradient.dot(own) * rest.volume;
             }
         }
         volume
     }
 }
 
-/// A node that a point has to do with.
+/// What the cells of a point make of a node around it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbour {
-    pub(super) node: u32,
     /// V_a g_ab.
     pub(super) gradient: Vec3<f64>,
     /// −Σ_e V_e ∇N_a·∇N_b.
@@ -147,9 +158,7 @@ pub(super) struct Neighbour {
 
 impl Neighbour {
     /// One that no cell has counted yet.
-    pub(super) fn new(node: u32) -> Self {
-        Self { node, gradient: Vec3::ZERO, spring: 0.0 }
-    }
+    pub(super) const UNCOUNTED: Self = Self { gradient: Vec3::ZERO, spring: 0.0 };
 }
 
 /// Cells of the same parameters, to the last bit, are of one tissue: its number for each cell, and a cell of each tissue.

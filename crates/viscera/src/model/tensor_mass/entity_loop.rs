@@ -102,12 +102,15 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     /// Takes a tetrahedron off the entity. The last one leaves exact zeros behind, not rounding errors.
     pub(crate) fn subtract(&mut self, entity: usize, tensors: &TetTensors, at: [usize; NODES]) {
         self.uses[entity] -= 1;
-        let row = self.stored.row_mut(self.row_of(entity));
+        let row = self.row_of(entity);
+        let (block, lane) = (self.stored.block_of_mut(T::LANES, E::COLUMNS, row / T::LANES), row % T::LANES);
         if self.uses[entity] == 0 {
-            row.for_each(|stored| *stored = T::ZERO);
+            (0..E::COLUMNS).for_each(|column| block[column * T::LANES + lane] = T::ZERO);
         } else {
-            for (stored, value) in row.zip(E::stored(tensors, at)) {
-                *stored = T::from_f64(stored.to_f64() - value);
+            let values = E::stored(tensors, at);
+            for column in 0..E::COLUMNS {
+                let stored = &mut block[column * T::LANES + lane];
+                *stored = T::from_f64(stored.to_f64() - values[column]);
             }
         }
     }

@@ -44,6 +44,7 @@ impl TetTensors {
     }
 
     /// B_jk [N/m].
+    #[inline(always)]
     pub(crate) fn b(&self, j: usize, k: usize) -> Mat3<f64> {
         let [a, b] = [self.alpha[j], self.alpha[k]];
         a.outer(b) * (0.5 * self.lambda)
@@ -53,6 +54,7 @@ impl TetTensors {
     }
 
     /// C_jkl [N/m²].
+    #[inline(always)]
     pub(crate) fn c(&self, j: usize, k: usize, l: usize) -> Vec3<f64> {
         self.alpha[j] * (0.5 * self.lambda * self.dots[k][l])
             + self.alpha[l] * (0.5 * self.mu * self.dots[j][k])
@@ -61,6 +63,7 @@ impl TetTensors {
     }
 
     /// D_jklm [N/m³].
+    #[inline(always)]
     pub(crate) fn d(&self, j: usize, k: usize, l: usize, m: usize) -> f64 {
         0.125 * self.lambda * self.dots[j][k] * self.dots[l][m]
             + 0.25 * self.mu * self.dots[j][m] * self.dots[k][l]
