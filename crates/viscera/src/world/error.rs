@@ -263,7 +263,7 @@ pub enum StepError {
         /// What is left of the forces, over those that balance.
         residual: f64,
     },
-    /// Full equations of backward Euler have solutions that gain energy from nobody only, in 64 parts of the step too.
+    /// Full equations have solutions only that gain energy from nobody, more than their scheme does, in 64 parts of the step too.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \
          which is stretched {stretch:.3} times before the step: all solutions that were found gain energy; the step is undone. Take a \

@@ -21,7 +21,7 @@ pub struct StepReport {
     /// Sub-steps taken; 1 for an implicit step, unless a fast tool divides it, its full equations were not solved at once, or it gained energy.
     pub substeps: u32,
     /// Times that the step was done again with more sub-steps, because the tissue stiffened on the way, full equations were not solved, or
-    /// backward Euler gained energy; between two equilibria, shares of the load that were tried in vain, of the body that took most.
+    /// energy was gained; between two equilibria, shares of the load that were tried in vain, of the body that took most.
     pub retries: u32,
     /// Cells removed.
     pub removed_cells: usize,

@@ -22,8 +22,8 @@ enum Refused {
 impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
     /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
-    /// So are steps that leave the numbers that there are, and those of backward Euler that gain energy. A linearised one that still does in
-    /// the shortest parts is taken.
+    /// So are steps that leave the numbers that there are, and those that gain energy as their scheme does not. A linearised one that still
+    /// does in the shortest parts is taken.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,

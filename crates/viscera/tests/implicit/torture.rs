@@ -206,15 +206,13 @@ fn full_steps_without_a_potential_are_made() {
     assert!(world.observe(id).gravity_energy < 0.4904, "it sinks");
 }
 
-/// Newmark's linearised steps have no bound. Where they throw nodes farther than a million sizes, the step is undone and says
-/// so; it went on to energies of 1e28 times that at the start, and beyond every number.
+/// Newmark's method has no bound. Where it throws nodes farther than a million sizes in the shortest parts too, the step is undone and says so.
 #[test]
 fn a_step_that_throws_nodes_a_million_sizes_away_is_undone() {
     let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, ..Implicit::default() };
     let (mut world, id) = cube(tetrahedra(), TotalLagrangian::new(neo_hookean()), settings);
-    let corner = Vector::splat(0.1);
-    world.body_mut(id).set_positions(|x| if x == corner { Vector::new(x.x, x.y, -0.05) } else { x });
-    let (error, before) = (0..150)
+    world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
+    let (error, before) = (0..10)
         .find_map(|_| {
             let before = world.body(id).positions().to_vec();
             world.step().err().map(|error| (error, before))
@@ -222,7 +220,39 @@ fn a_step_that_throws_nodes_a_million_sizes_away_is_undone() {
         .expect("the trapezoidal rule runs away here");
     assert!(matches!(error, StepError::Diverged { .. }), "{error}");
     assert_eq!(world.body(id).positions(), &before[..]);
-    let farthest = world.observe(id).max_displacement;
-    assert!(farthest < 1e7, "{farthest} m");
     assert!(energy(&mut world, id).is_finite());
+}
+
+/// Schemes that have no bound make steps that throw tissue across a hump of its energy in parts, linearised or in full: flattened, in their mirror
+/// image, or with a corner poked through, bodies come to rest with no more energy than at the start. Newmark's method rose to 1e20 times it,
+/// until nodes were thrown a million sizes away.
+#[test]
+fn schemes_without_a_bound_come_out_of_impossible_shapes() {
+    let full = Newton::Full { relative: 1e-8, at_most: 100 };
+    let corner = Vector::splat(0.1);
+    let shapes: [fn(Vector, Vector) -> Vector; 3] = [
+        |x, _| Vector::new(0.05, x.y, x.z),
+        |x, _| Vector::new(x.x, x.y, -x.z),
+        |x, corner| if x == corner { Vector::new(x.x, x.y, -0.05) } else { x },
+    ];
+    let mut again = 0;
+    for (scheme, newton) in [Scheme::AVERAGE_ACCELERATION, Scheme::Bdf2]
+        .into_iter()
+        .flat_map(|scheme| [Newton::Linearised, full].map(|newton| (scheme, newton)))
+    {
+        for shape in shapes {
+            let settings = Implicit { scheme, newton, ..Implicit::default() };
+            let (mut world, id) = cube(tetrahedra(), NodallyIntegrated::new(neo_hookean()), settings);
+            world.body_mut(id).set_positions(|x| shape(x, corner));
+            let start = energy(&mut world, id);
+            for _ in 0..150 {
+                again += world.step().unwrap().retries;
+                let now = energy(&mut world, id);
+                assert!(now <= 1.1 * start, "{scheme:?}, {newton:?}: {now} J from {start} J");
+            }
+            // One of them in another shape that holds, with 0.013 of it.
+            assert!(energy(&mut world, id) < 0.02 * start, "{scheme:?}, {newton:?}");
+        }
+    }
+    assert!(again > 0);
 }
