@@ -196,10 +196,8 @@ fn may_end_otherwise(trial: &Trial) -> bool {
         }
         // A thousand sizes are more than an explicit step can come back from with a law that hardens so.
         Outcome::Undone("diverged") => method.name == "explicit" && shape == Shape::Stretched && (stable || plain),
-        // Laws with a volume term have other equilibria: folded over, no cell inside out.
-        Outcome::Elsewhere => stable || plain,
-        // The stable law is driven back from inside out by whatever cell, the plain one is not.
-        Outcome::Inverted(_) => plain,
+        // Laws with a volume term have other shapes that hold: folded over, no cell inside out; the plain one also with some.
+        Outcome::Elsewhere { inverted, is_steady } => is_steady && (plain || stable && inverted == 0),
         // Soft where it is flat, and slow; or swinging still, after a thousand sizes.
         Outcome::Moving => stable || turns && shape == Shape::Stretched,
         _ => false,

@@ -72,6 +72,7 @@ impl Torture {
                 "back",
                 "must come back",
                 "do",
+                "in another shape that holds",
                 "undone",
                 "no numbers",
                 "panics",
@@ -83,7 +84,7 @@ impl Torture {
             let of: Vec<&Trial> = self.trials.iter().filter(|trial| trial.case.method == method).collect();
             let count = |good: &dyn Fn(&Trial) -> bool| of.iter().filter(|trial| good(trial)).count().to_string();
             let refused = |trial: &Trial| matches!(trial.outcome, Outcome::Refused(_));
-            let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none();
+            let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none() && !trial.holds_elsewhere();
             let conserving = of.iter().filter(|trial| trial.case.combination.has_energy());
             let (gain, peak) = conserving
                 .fold((0.0, 0.0), |(gain, peak): (f64, f64), trial| (gain.max(trial.gain), peak.max(trial.peak)));
@@ -93,6 +94,7 @@ impl Torture {
                 count(&|trial| trial.outcome == Outcome::Back),
                 count(&has_to),
                 count(&|trial| has_to(trial) && trial.outcome == Outcome::Back),
+                count(&|trial| trial.holds_elsewhere()),
                 count(&|trial| matches!(trial.outcome, Outcome::Undone(_))),
                 count(&|trial| trial.outcome == Outcome::NotANumber),
                 count(&|trial| trial.outcome == Outcome::Panicked),
@@ -102,7 +104,19 @@ impl Torture {
         }
         let mut all = Table::new(
             "released",
-            &["model and law", "integrator", "shape", "held", "outcome", "why", "steps", "deviation", "gain", "peak"],
+            &[
+                "model and law",
+                "integrator",
+                "shape",
+                "held",
+                "outcome",
+                "why",
+                "steps",
+                "disturbed",
+                "deviation",
+                "gain",
+                "peak",
+            ],
         );
         for trial in &self.trials {
             let (case, why) = (&trial.case, trial.why());
@@ -114,6 +128,7 @@ impl Torture {
                 trial.outcome.name().into(),
                 why.into(),
                 trial.steps.to_string(),
+                trial.disturbances.to_string(),
                 brief(trial.deviation),
                 brief(trial.gain),
                 brief(trial.peak),
@@ -138,8 +153,11 @@ impl Torture {
                 "Which shapes come back, in explicit steps and in those of backward Euler, linearised and in full; held and free. \
                  M: cannot, the law is blind to reflections (take `stable-neo-hookean`, `neo-hookean`, or the model \
                  `corotational`). S: cannot by symmetry, no direction out of a point or a line is better than another. T: takes \
-                 rotations for strain, and comes to rest turned. W: nodes that remember their place may have it in a twist. Where nothing of this is in the way: E, at rest in another \
-                 shape without an inverted cell; I, at rest with inverted cells; +, not at rest yet; U, a step was undone.",
+                 rotations for strain, and comes to rest turned. W: nodes that remember their place may have it in a twist. Where nothing of this is in the way: A, at rest in another shape that holds, \
+                 whose energy is least there too: disturbed by a thousandth of the size and let go in explicit steps, it comes back to itself (take the model \
+                 `corotational` on tetrahedra, which leaves all of these shapes). Where it does not, the energy is only stationary there, and long implicit \
+                 steps hold tissue in such a place: it is disturbed as much and goes on; D, back after that; E, at rest in another \
+                 shape all the same; I, the same with inverted cells. +, not at rest yet; U, a step was undone.",
             )
             .table(self.shapes())
             .data(all)
@@ -359,10 +377,17 @@ impl Torture {
 }
 
 impl Trial {
+    /// Whether it is at rest in another shape that nothing but force leads out of.
+    fn holds_elsewhere(&self) -> bool {
+        matches!(self.outcome, Outcome::Elsewhere { is_steady: true, .. })
+    }
+
     fn why(&self) -> &'static str {
         match (&self.outcome, self.case.obstacle()) {
             (Outcome::Refused(why) | Outcome::Undone(why), _) => why,
-            (Outcome::Back, _) | (_, None) => "",
+            (Outcome::Back, _) => "",
+            (Outcome::Elsewhere { is_steady: true, .. }, None) => "holds in another shape: take the model corotational",
+            (_, None) => "",
             (_, Some(Obstacle::Mirror)) => "blind to reflections: take stable-neo-hookean",
             (_, Some(Obstacle::Symmetry)) => "no direction is better than another",
             (_, Some(Obstacle::Turned)) => "takes rotations for strain",
@@ -372,6 +397,7 @@ impl Trial {
 
     fn letter(&self) -> &'static str {
         match (&self.outcome, self.case.obstacle()) {
+            (Outcome::Back, _) if self.disturbances > 0 => "D",
             (Outcome::Back, _) => "✓",
             (Outcome::Refused(_), _) => "–",
             (Outcome::Undone(_), _) => "U",
@@ -380,8 +406,9 @@ impl Trial {
             (_, Some(Obstacle::Symmetry)) => "S",
             (_, Some(Obstacle::Turned)) => "T",
             (_, Some(Obstacle::Twist)) => "W",
-            (Outcome::Inverted(_), None) => "I",
-            (Outcome::Elsewhere, None) => "E",
+            (Outcome::Elsewhere { is_steady: true, .. }, None) => "A",
+            (Outcome::Elsewhere { inverted: 0, .. }, None) => "E",
+            (Outcome::Elsewhere { .. }, None) => "I",
             (Outcome::Moving, None) => "+",
         }
     }

@@ -66,10 +66,16 @@ impl Shape {
 impl Shape {
     /// Puts the free nodes of a body there.
     pub(super) fn put_on(self, world: &mut World<f64>, id: BodyId, random: &mut Random) {
-        let places: Vec<Vector> = world.body(id).positions().iter().map(|&x| self.place(x, random)).collect();
-        let next = Cell::new(0);
-        world.body_mut(id).set_positions(|_| places[next.replace(next.get() + 1)]);
+        let rest = world.body(id).positions().to_vec();
+        put_at(world, id, |node| self.place(rest[node], random));
     }
+}
+
+/// Puts the free nodes of a body at places [m].
+pub(super) fn put_at(world: &mut World<f64>, id: BodyId, place: impl FnMut(usize) -> Vector) {
+    let places: Vec<Vector> = (0..world.body(id).positions().len()).map(place).collect();
+    let next = Cell::new(0);
+    world.body_mut(id).set_positions(|_| places[next.replace(next.get() + 1)]);
 }
 
 /// A body in a shape, and what moves it.
