@@ -34,6 +34,7 @@ impl<T: Scalar> Step<'_, T> {
     pub(super) fn balance_at_start(&mut self) {
         self.body.update_forces_and_linearize(self.stages);
         self.update_external_forces(self.from);
+        self.memory.external.copy_from_slice(&self.body.external_forces);
         self.memory.nodal.copy_from_slice(&self.memory.velocities);
         self.find_damping();
         let (state, memory) = (&self.body.state, &mut *self.memory);

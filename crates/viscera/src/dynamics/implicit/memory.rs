@@ -11,6 +11,8 @@ pub struct ImplicitMemory<T> {
     pub(super) start: Vec<Vec3<T>>,
     /// Velocities at the beginning of the step [m/s].
     pub(super) velocities: Vec<Vec3<T>>,
+    /// External forces at the beginning of the step, where the scheme needs the accelerations there [N].
+    pub(super) external: Vec<Vec3<T>>,
     /// δ, the displacement over the step as far as it is known [m].
     pub(super) increment: Vec<Vec3<T>>,
     /// δ̂ without forces; for driven nodes, where they have to go [m].
@@ -54,6 +56,7 @@ impl<T: Scalar> ImplicitMemory<T> {
         Self {
             start: zeros(),
             velocities: zeros(),
+            external: zeros(),
             increment: zeros(),
             coast: zeros(),
             coast_velocities: zeros(),
