@@ -237,6 +237,7 @@ fn energy(seen: &BodyObservables) -> f64 {
     seen.kinetic_energy + seen.elastic_energy
 }
 
+/// The [`difference`] to the rest shape.
 fn deviation(world: &World<f64>, id: BodyId) -> f64 {
     difference(world, id, world.body(id).mesh().nodes())
 }
