@@ -9,8 +9,8 @@ use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
 use crate::solver::dot;
 
-/// Highest over lowest eigenvalue of the errors that a smoother is for.
-const SPAN: f64 = 10.0;
+/// Highest over lowest eigenvalue of the errors that a smoother is for. From 15 to 30 it is all the same; 10 takes a tenth more iterations.
+const SPAN: f64 = 20.0;
 /// Iterations that find the highest eigenvalue.
 pub(super) const LANCZOS: usize = 6;
 /// What they may have missed: after six they were at most 10 % below what 32 found.
