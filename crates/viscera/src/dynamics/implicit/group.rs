@@ -36,7 +36,8 @@ pub(crate) fn advance<T: Scalar>(
     stages: Stages,
 ) -> (ImplicitReport, bool) {
     let numbers = settings.scheme.numbers(false);
-    let mut group = Group { bodies, memories, together, settings, numbers, interval, stages, went_astray: false };
+    let mut group =
+        Group { bodies, memories, together, settings, numbers, interval, stages, went_astray: false, imbalance: 0.0 };
     group.agree_on_past();
     group.begin();
     let mut report = group.solve();
@@ -64,6 +65,8 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) stages: Stages<'a>,
     /// Whether a linearised step had to be solved in full instead.
     pub(super) went_astray: bool,
+    /// Share of the forces that a linearised step left without balance.
+    pub(super) imbalance: f64,
 }
 
 /// Tied bodies, all bodies of their world, and the memory of each.

@@ -65,6 +65,7 @@ impl<T: Scalar> Group<'_, T> {
             let astray = astray && after.lack > solve.rounding;
             if !astray && after.lack.is_finite() {
                 self.each(|step| step.memory.is_linear = true);
+                self.imbalance = if after.scale > 0.0 { after.lack / after.scale } else { 0.0 };
                 return ImplicitReport {
                     newton_iterations: 1,
                     linear_iterations: solve.iterations,
