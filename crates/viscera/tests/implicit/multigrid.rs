@@ -97,7 +97,7 @@ fn cut_bodies_move_as_with_block_jacobi() {
     assert_same(|| fine_bar(NodallyIntegrated::new(tissue())), linearised(), &cut, "at the nodes");
 }
 
-/// Cut half through, or slit along most of its length, a bar that comes to rest takes little more than half as many iterations again as the
+/// Cut half through, or slit along most of its length, a bar that comes to rest takes a quarter to a half as many iterations again as the
 /// whole one: of lattices that reached across cuts it took twice to five times as many, and the more the finer the mesh. What was cut off
 /// comes back with a snapshot, and then it is the bar of before.
 #[test]
@@ -121,7 +121,7 @@ fn a_cut_takes_few_iterations_more() {
     let without = iterations(&[]);
     let half = iterations(&cells(|p| p.z > 0.15 && p.z < 0.167 && p.y > 0.05));
     let slit = iterations(&cells(|p| p.x > 0.05 && p.x < 0.067 && p.z > 0.07));
-    assert!(5 * half <= 8 * without && 5 * slit <= 8 * without, "{without}, cut half through {half}, slit {slit}");
+    assert!(2 * half <= 3 * without && 2 * slit <= 3 * without, "{without}, cut half through {half}, slit {slit}");
     assert_eq!(iterations(&[]), without);
 }
 
