@@ -53,12 +53,12 @@ impl Check<'_> {
     /// Checks against a schema without alternatives; `rivals` are keys of the alternatives that were not chosen.
     fn single(&self, node: &Node, schema: &Map<String, Json>, at: &At, rivals: &[String]) -> Vec<Finding> {
         if !accepts(schema, node) {
-            let help = dimension(schema).map_or(String::new(), Dimension::advice);
+            let help = self.as_kind(node, schema, at).or_else(|| dimension(schema).map(Dimension::advice));
             return vec![self.refuse(
                 node,
                 at,
                 format!("expected {}, found {}", describe(schema, at.title), node.describe()),
-                help,
+                help.unwrap_or_default(),
             )];
         }
         match &node.value {
@@ -167,9 +167,11 @@ impl Check<'_> {
                 let missing: Vec<_> = known.iter().filter(|name| node.child(name).is_none()).cloned().collect();
                 let guess = closest(key, &missing);
                 meant.extend(guess.clone());
+                let of_scene = if guess.is_none() && at.depth > 0 { self.key_of_scene(key) } else { None };
                 let guess = guess.map_or(String::new(), |name| format!(", did you mean `{name}`?"));
                 let message = format!("unknown key `{key}`{guess}");
-                let error = self.document.error(key_span, message, known_list(schema, at.title, node));
+                let help = of_scene.unwrap_or_else(|| known_list(schema, at.title, node));
+                let error = self.document.error(key_span, message, help);
                 findings.push(Finding { error, depth: at.depth });
             }
         }
@@ -190,6 +192,22 @@ impl Check<'_> {
             findings.extend(self.exactly_one(node, entries, groups, at, &present));
         }
         findings
+    }
+
+    /// How to write a word as the table of its kind that is asked for.
+    fn as_kind(&self, node: &Node, schema: &Map<String, Json>, at: &At) -> Option<String> {
+        let word = node.text()?;
+        let known = self.words(schema.get("properties")?.get("kind")?);
+        let kind = if known.iter().any(|name| name == word) { word.to_owned() } else { closest(word, &known)? };
+        Some(format!("write {} = {{ kind = \"{kind}\" }}", at.key))
+    }
+
+    /// Where a key belongs that stands behind the head of a table, and is one of the scene itself.
+    fn key_of_scene(&self, key: &str) -> Option<String> {
+        let scene = self.resolved(self.root);
+        let known: Vec<String> = scene.get("properties")?.as_object()?.keys().cloned().collect();
+        let name = if known.iter().any(|name| name == key) { key.to_owned() } else { closest(key, &known)? };
+        Some(format!("`{name}` is a key of the scene: write it above the first [table]"))
     }
 
     /// A table of tables under names that the user chooses, such as bodies.

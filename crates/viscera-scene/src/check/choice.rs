@@ -53,6 +53,13 @@ impl Check<'_> {
         }
     }
 
+    /// The words that a schema allows, by any of its alternatives.
+    pub(super) fn words(&self, schema: &Json) -> Vec<String> {
+        let mut ways = Vec::new();
+        self.ways(&self.resolved(schema), "", &mut ways);
+        ways.iter().flat_map(|(way, _)| names(way)).collect()
+    }
+
     fn word(&self, node: &Node, text: &str, possible: &[&Way], at: &At) -> Vec<Finding> {
         let words: Vec<String> = possible.iter().flat_map(|(way, _)| names(way)).collect();
         if words.iter().any(|word| word == text) {

@@ -51,6 +51,14 @@ const SLIPS: &[(&str, &str)] = &[
     ("kind = \"tensor-mass\"", "kind = \"corotational\", rotation = \"quaternion\""),
     ("kind = \"tensor-mass\"", "kind = \"corotational\", strain-displacement = \"current\""),
     ("damping = 0.5", "stiffness-damping = \"0.5 1/s\""),
+    ("model = { kind = \"tensor-mass\", keep-volume = \"20 kPa\" }", "model = \"corotationl\""),
+    (
+        "law = { kind = \"st-venant-kirchhoff\", young = \"5 kPa\", poisson = 0.45, fibre = { direction = [1, 0, 0], young = \"12 kPa\" } }",
+        "law = \"linear\"",
+    ),
+    ("precision = \"double\"", "integrator = \"newmark\""),
+    ("damping = 0.5", "integrator = \"explicit\""),
+    ("damping = 0.5", "durations = \"2 s\""),
     // Quantities.
     ("edge = \"12 mm\"", "edge = \"5 kg\""),
     ("edge = \"12 mm\"", "edge = \"12 furlongs\""),
