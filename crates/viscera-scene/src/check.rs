@@ -197,16 +197,17 @@ impl Check<'_> {
     /// How to write a word as the table of its kind that is asked for.
     fn as_kind(&self, node: &Node, schema: &Map<String, Json>, at: &At) -> Option<String> {
         let word = node.text()?;
-        let known = self.words(schema.get("properties")?.get("kind")?);
-        let kind = if known.iter().any(|name| name == word) { word.to_owned() } else { closest(word, &known)? };
+        let kind = closest(word, &self.words(schema.get("properties")?.get("kind")?))?;
         Some(format!("write {} = {{ kind = \"{kind}\" }}", at.key))
     }
 
-    /// Where a key belongs that stands behind the head of a table, and is one of the scene itself.
+    /// Where a key belongs that stands behind the head of a table, and is one of the scene itself; not of its tables of named tables, which have
+    /// heads of their own.
     fn key_of_scene(&self, key: &str) -> Option<String> {
         let scene = self.resolved(self.root);
-        let known: Vec<String> = scene.get("properties")?.as_object()?.keys().cloned().collect();
-        let name = if known.iter().any(|name| name == key) { key.to_owned() } else { closest(key, &known)? };
+        let has_names = |schema: &Json| self.resolved(schema).get("additionalProperties").is_some_and(Json::is_object);
+        let keys = scene.get("properties")?.as_object()?.iter().filter(|(_, schema)| !has_names(schema));
+        let name = closest(key, &keys.map(|(key, _)| key.clone()).collect::<Vec<_>>())?;
         Some(format!("`{name}` is a key of the scene: write it above the first [table]"))
     }
 

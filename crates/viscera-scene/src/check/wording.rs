@@ -68,8 +68,11 @@ pub(super) fn known_list(schema: &Map<String, Json>, title: &str, node: &Node) -
     format!("{} knows: {}", subject(title, node), keys.join(", "))
 }
 
-/// The name that a misspelt or shortened word comes nearest to, if any is near.
+/// The name that a word is, or that a misspelt or shortened one comes nearest to, if any is near.
 pub fn closest(word: &str, names: &[String]) -> Option<String> {
+    if names.iter().any(|name| name == word) {
+        return Some(word.to_owned());
+    }
     if let Some(name) = names.iter().find(|name| word.len() >= 3 && name.starts_with(&word.to_lowercase())) {
         return Some(name.clone());
     }

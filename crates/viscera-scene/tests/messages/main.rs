@@ -59,6 +59,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("precision = \"double\"", "integrator = \"newmark\""),
     ("damping = 0.5", "integrator = \"explicit\""),
     ("damping = 0.5", "durations = \"2 s\""),
+    ("close = \"0.2 s\"", "body = \"liver\""),
     // Quantities.
     ("edge = \"12 mm\"", "edge = \"5 kg\""),
     ("edge = \"12 mm\"", "edge = \"12 furlongs\""),
