@@ -141,3 +141,15 @@ def test_a_volume_that_vtk_wrote_is_read(tmp_path):
     path.write_text("\n".join(lines) + "\n")
     mesh, _ = viscera.read_mesh(path)
     assert np.array_equal(mesh.nodes, BOX.nodes) and np.array_equal(mesh.cells, BOX.cells)
+
+
+def test_a_reordered_mesh_has_the_same_nodes_and_cells_under_other_numbers():
+    plain = viscera.TetMesh.box_grid([4, 4, 8], [0.1, 0.1, 0.2])
+    order = np.random.default_rng(7).permutation(len(plain.nodes))
+    number = np.argsort(order).astype(np.uint32)
+    tangled = viscera.TetMesh(plain.nodes[order], number[plain.cells], {"foot": number[plain.regions["z-min"]["nodes"]]})
+    mesh, nodes, cells = tangled.reordered()
+    assert np.array_equal(mesh.nodes, tangled.nodes[nodes])
+    assert np.array_equal(nodes[mesh.cells], tangled.cells[cells])
+    assert np.array_equal(np.sort(nodes[mesh.regions["foot"]["nodes"]]), tangled.regions["foot"]["nodes"])
+    assert np.ptp(mesh.cells, axis=1).mean() < 0.3 * np.ptp(tangled.cells, axis=1).mean()

@@ -17,6 +17,9 @@ pub(crate) enum MeshCommand {
     Convert {
         #[command(flatten)]
         source: MeshSource,
+        /// Number nodes and cells anew, neighbours near one another: meshes whose numbers are all over the body step slower.
+        #[arg(long)]
+        reorder: bool,
         /// The file to write (.vtu or .msh), in metres.
         out: PathBuf,
     },

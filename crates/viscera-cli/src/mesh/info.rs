@@ -4,6 +4,7 @@ use viscera::mesh::VolumeMesh;
 use viscera_io::{ImportedMesh, grouped};
 
 use super::arguments::MeshSource;
+use super::order;
 use super::writing::regions;
 use crate::failure::Failure;
 use crate::terminal::{heading, say};
@@ -40,6 +41,9 @@ fn volume(source: &MeshSource, mesh: VolumeMesh) -> Result<(), Failure> {
     ));
     for remark in report.remarks() {
         say(&remark);
+    }
+    if let Some(remark) = order::remark(&mesh) {
+        say(&format!("{remark}: `viscera mesh convert --reorder` makes steps faster"));
     }
     say(&format!("\n{}", heading("regions")));
     let regions = regions(&mesh);

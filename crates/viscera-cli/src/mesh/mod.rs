@@ -5,6 +5,7 @@ mod check;
 mod convert;
 mod generate;
 mod info;
+pub(crate) mod order;
 mod reading;
 mod tetrahedralize;
 mod writing;
@@ -16,7 +17,7 @@ pub(crate) fn carry_out(command: &MeshCommand) -> Result<(), Failure> {
     match command {
         MeshCommand::Info(source) => info::info(source),
         MeshCommand::Check(source) => check::check(source),
-        MeshCommand::Convert { source, out } => convert::convert(source, out),
+        MeshCommand::Convert { source, reorder, out } => convert::convert(source, *reorder, out),
         MeshCommand::Generate { shape, out } => generate::generate(shape, out),
         MeshCommand::Tetrahedralize { source, edge, out } => tetrahedralize::tetrahedralize(source, *edge, out),
     }

@@ -29,7 +29,18 @@ pub(super) fn text(profile: &Profile) -> String {
 }
 
 fn told(what: &str, profile: &Profile, cost: Cost, share: &str) -> String {
-    format!("{}: {}, {share}\n{}", heading(what), name(cost), why(profile, cost).join("\n"))
+    let mut why = why(profile, cost);
+    if matches!(cost, Cost::Stage(stage) if goes_through_nodes(stage)) {
+        why.extend(profile.tangled.iter().map(|(body, remark)| {
+            format!("Body `{body}`: {remark}. `viscera mesh convert --reorder` on its file makes this faster.")
+        }));
+    }
+    format!("{}: {}, {share}\n{}", heading(what), name(cost), why.join("\n"))
+}
+
+/// Whether a stage reads and writes the nodes of every cell.
+fn goes_through_nodes(stage: Stage) -> bool {
+    matches!(stage, Stage::Forces(_) | Stage::Products(_) | Stage::LinearSolve | Stage::KickAndDrift)
 }
 
 fn why(profile: &Profile, cost: Cost) -> Vec<String> {

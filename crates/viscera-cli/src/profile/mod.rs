@@ -17,6 +17,7 @@ use crate::arguments::ProfileArguments;
 use crate::built_in::OpenScene;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::mesh::order;
 use crate::run::Ending;
 use crate::run::folder::Folder;
 use crate::run::recording::Recording;
@@ -42,6 +43,8 @@ pub(crate) struct Profile {
     /// The time that a frame may take [s].
     frame: f64,
     limit: Option<limit::Limit>,
+    /// Bodies from files whose nodes are in no order, and what is known of it.
+    tangled: Vec<(String, String)>,
     cells: usize,
     single: bool,
     how: String,
@@ -117,6 +120,7 @@ fn run<T: Precision>(
         spent: stopwatch.spent().into_iter().collect(),
         frame,
         limit: limit::Limit::of(&built),
+        tangled: tangled(&built),
         cells: cells(&built),
         single: built.file.precision == file::Precision::Single,
         how: built.file.integrator.kind.name().to_owned(),
@@ -126,6 +130,14 @@ fn run<T: Precision>(
 
 fn cells<T: Precision>(built: &BuiltScene<T>) -> usize {
     built.bodies.values().map(|&id| built.world.body(id).mesh().cell_count()).sum()
+}
+
+/// What a mesh file could be reordered for; meshes that are made have an order.
+fn tangled<T: Precision>(built: &BuiltScene<T>) -> Vec<(String, String)> {
+    let is_read =
+        |name: &str| matches!(built.file.body.get(name).map(|body| &body.mesh), Some(file::MeshFile::File(_)));
+    let read = built.bodies.iter().filter(|(name, _)| is_read(name));
+    read.filter_map(|(name, &id)| Some((name.clone(), order::remark(built.world.body(id).mesh())?))).collect()
 }
 
 impl Profile {

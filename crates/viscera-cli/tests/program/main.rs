@@ -20,6 +20,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 use tempfile::TempDir;
+use viscera::mesh::{NamedRegion, TetMesh};
 
 /// What a started program said, and how it ended.
 struct Outcome {
@@ -118,3 +119,17 @@ density = 1000
 law = { kind = "st-venant-kirchhoff", young = "10 kPa", poisson = 0.4 }
 fix = "y-max"
 "#;
+
+/// A box of 6 144 tetrahedra, and the same with its nodes in no order: 64 has no divisor in common with their number.
+fn plain_and_tangled() -> [TetMesh; 2] {
+    let mut plain = TetMesh::box_grid([8, 8, 16], [0.1, 0.1, 0.2]);
+    let region = |nodes| NamedRegion { nodes, ..NamedRegion::default() };
+    plain.regions = [("y-max".to_owned(), region(plain.regions["y-max"].nodes.clone()))].into();
+    let nodes = plain.nodes.len();
+    let renamed = |node: u32| (node as usize * 64 % nodes) as u32;
+    let mut tangled = plain.clone();
+    plain.nodes.iter().zip(0..).for_each(|(&place, node)| tangled.nodes[renamed(node) as usize] = place);
+    tangled.cells.iter_mut().flatten().for_each(|node| *node = renamed(*node));
+    tangled.regions.values_mut().flat_map(|region| &mut region.nodes).for_each(|node| *node = renamed(*node));
+    [plain, tangled]
+}

@@ -1,6 +1,8 @@
 //! `profile` and `bench`: what they say, not how long it took.
 
-use crate::{CUBE, Desk};
+use viscera_io::write::write_tet_msh;
+
+use crate::{CUBE, Desk, plain_and_tangled};
 
 /// The numbers of a column of percentages add up to all of it.
 fn shares(text: &str) -> Vec<f64> {
@@ -57,6 +59,21 @@ fn a_profile_of_a_step_that_fails_says_so_and_shows_the_steps_before_it() {
     let force = "[[\"0.05 s\", [0, 0, 0]], [\"0.1 s\", [0, \"-1e15 kN\", 0]]]";
     desk.write("crushed.toml", format!("{CUBE}load = [{{ region = \"y-min\", force = {force} }}]\n"));
     desk.viscera(&["profile", "crushed.toml"]).ends_with(1).says("largest cost").complains("the step is undone");
+}
+
+/// Nodes that a mesher numbered in no order.
+#[test]
+fn a_profile_says_that_the_nodes_of_a_mesh_are_in_no_order() {
+    let desk = Desk::new();
+    let made = CUBE.lines().find(|line| line.starts_with("mesh")).expect("a mesh");
+    for (name, mesh) in ["plain", "tangled"].into_iter().zip(plain_and_tangled()) {
+        write_tet_msh(desk.path(&format!("{name}.msh")), &mesh).expect("a folder of its own");
+        desk.write(&format!("{name}.toml"), CUBE.replace(made, &format!("mesh = {{ file = \"{name}.msh\" }}")));
+    }
+    let ask = "`viscera mesh convert --reorder` on its file makes this faster";
+    desk.viscera(&["profile", "tangled.toml", "--no-trials"]).ends_with(0).says("in the mean, where").says(ask);
+    let outcome = desk.viscera(&["profile", "plain.toml", "--no-trials"]).ends_with(0);
+    assert!(!outcome.out.contains("--reorder"), "{}", outcome.out);
 }
 
 /// Rounds of a resection, with grasp and cut, for some seconds.

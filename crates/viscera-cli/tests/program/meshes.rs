@@ -1,8 +1,9 @@
 //! `viscera mesh`, on meshes of other programs and on those that it makes.
 
+use viscera_io::write::write_tet_msh;
 use viscera_io::{ImportedMesh, read_mesh};
 
-use crate::{Desk, sample};
+use crate::{Desk, plain_and_tangled, sample};
 
 fn text(path: &std::path::Path) -> &str {
     path.to_str().expect("UTF-8")
@@ -42,6 +43,25 @@ fn a_mesh_keeps_its_cells_and_regions_from_gmsh_to_msh_and_scales_to_metres() {
     };
     assert_eq!((vtu.nodes, vtu.cells), (after.nodes, after.cells));
     desk.viscera(&["mesh", "convert", "bar.msh", "bar.stl"]).ends_with(2).complains("end the name with .vtu or .msh");
+}
+
+/// A box with its nodes in no order: reordered, it has the same cells at the same places, near one another.
+#[test]
+fn a_mesh_is_reordered_and_says_how_far_its_numbers_were_apart() {
+    let desk = Desk::new();
+    let [_, mesh] = plain_and_tangled();
+    write_tet_msh(desk.path("tangled.msh"), &mesh).expect("a folder of its own");
+    desk.viscera(&["mesh", "info", "tangled.msh"]).ends_with(0).says("viscera mesh convert --reorder");
+    desk.viscera(&["mesh", "convert", "tangled.msh", "ordered.msh", "--reorder"])
+        .ends_with(0)
+        .says("numbers of a cell's nodes lie ")
+        .says("wrote ordered.msh");
+    let told = desk.viscera(&["mesh", "info", "ordered.msh"]).ends_with(0).says("6 144 tetrahedra");
+    assert!(!told.out.contains("--reorder"), "{}", told.out);
+    let surface = sample("cube-ascii.stl");
+    desk.viscera(&["mesh", "convert", text(&surface), "cube.vtu", "--reorder"])
+        .ends_with(2)
+        .complains("a surface has no cells to reorder");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn check<const CORNERS: usize, const FACE: usize>(
     form: fn([Point; CORNERS]) -> Form,
 ) -> Result<(Mesh<CORNERS, FACE>, MeshReport), MeshError> {
     mesh.check_indices()?;
-    check_regions(&mesh)?;
+    mesh.check_regions()?;
     let mut errors = repeated_cells(&mesh);
     let mut report = MeshReport { cells: mesh.cells.len(), flattest_quality: f64::INFINITY, ..Default::default() };
     for cell in 0..mesh.cells.len() {
@@ -95,18 +95,24 @@ fn check<const CORNERS: usize, const FACE: usize>(
     Ok((mesh, report))
 }
 
-fn check_regions<const CORNERS: usize, const FACE: usize>(mesh: &Mesh<CORNERS, FACE>) -> Result<(), MeshError> {
-    for (name, region) in &mesh.regions {
-        let missing_node =
-            region.nodes.iter().chain(region.faces.iter().flatten()).find(|&&node| node as usize >= mesh.nodes.len());
-        if let Some(&node) = missing_node {
-            return Err(MeshError::RegionMissingNode { region: name.clone(), node: node as usize });
+impl<const CORNERS: usize, const FACE: usize> Mesh<CORNERS, FACE> {
+    /// Checks that the nodes and cells exist that regions name.
+    pub(super) fn check_regions(&self) -> Result<(), MeshError> {
+        for (name, region) in &self.regions {
+            let missing_node = region
+                .nodes
+                .iter()
+                .chain(region.faces.iter().flatten())
+                .find(|&&node| node as usize >= self.nodes.len());
+            if let Some(&node) = missing_node {
+                return Err(MeshError::RegionMissingNode { region: name.clone(), node: node as usize });
+            }
+            if let Some(&cell) = region.cells.iter().find(|&&cell| cell as usize >= self.cells.len()) {
+                return Err(MeshError::RegionMissingCell { region: name.clone(), cell: cell as usize });
+            }
         }
-        if let Some(&cell) = region.cells.iter().find(|&&cell| cell as usize >= mesh.cells.len()) {
-            return Err(MeshError::RegionMissingCell { region: name.clone(), cell: cell as usize });
-        }
+        Ok(())
     }
-    Ok(())
 }
 
 fn repeated_corner<const CORNERS: usize>(mut corners: [u32; CORNERS]) -> Option<u32> {

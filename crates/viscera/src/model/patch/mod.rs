@@ -8,7 +8,6 @@ mod copies;
 mod direction;
 mod element;
 mod fan;
-mod partition;
 mod tet_fans;
 mod visitor;
 
@@ -16,9 +15,9 @@ pub(crate) use element::{Diagonal, Element, Measure, Record};
 pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
-use self::partition::partition;
 use crate::executor::{Divide, Executor};
 use crate::math::{Mat3, Scalar, Sym3, Vec3};
+use crate::mesh::partition;
 
 /// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
 /// modulo it is a number of a node, and needs no check.

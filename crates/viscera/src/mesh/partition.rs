@@ -1,13 +1,12 @@
+//! Cells in compact parts.
+
+use super::Point;
 use crate::math::Vec3;
 
 /// Cells in compact parts that touch at most `most` nodes each: halved across their longest side until they do.
 ///
 /// The numbers of a part are in ascending order.
-pub(super) fn partition<const CORNERS: usize>(
-    nodes: &[Vec3<f64>],
-    cells: &[[u32; CORNERS]],
-    most: usize,
-) -> Vec<Vec<u32>> {
+pub(crate) fn partition<const CORNERS: usize>(nodes: &[Point], cells: &[[u32; CORNERS]], most: usize) -> Vec<Vec<u32>> {
     let centres =
         cells.iter().map(|corners| corners.iter().fold(Vec3::ZERO, |sum, &node| sum + nodes[node as usize])).collect();
     let mut halving = Halving { cells, centres, most, seen: vec![u32::MAX; nodes.len()], stamp: 0, parts: Vec::new() };
@@ -21,7 +20,7 @@ pub(super) fn partition<const CORNERS: usize>(
 struct Halving<'a, const CORNERS: usize> {
     cells: &'a [[u32; CORNERS]],
     /// Sums of the corners' places [m].
-    centres: Vec<Vec3<f64>>,
+    centres: Vec<Point>,
     most: usize,
     /// The last count in which each node was met.
     seen: Vec<u32>,
