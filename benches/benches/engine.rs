@@ -55,7 +55,8 @@ struct Suite<'a> {
 }
 
 impl Suite<'_> {
-    /// Measures `round`, which handles `elements` elements and gives the time that counts.
+    /// Measures `round`, which handles `elements` elements and gives the time that counts, of which the best is told: whatever
+    /// else the machine does makes a round only longer, and the peak beside it is the best of several runs as well.
     fn measure<T: Precision>(
         &self,
         name: &str,
@@ -67,9 +68,12 @@ impl Suite<'_> {
         let mut best = Duration::MAX;
         self.group.borrow_mut().bench_function(&id, |bencher| {
             bencher.iter_custom(|rounds| {
-                let total = (0..rounds).map(|_| round()).sum::<Duration>();
-                best = best.min(total / rounds as u32);
-                total
+                let mut next = || {
+                    let time = round();
+                    best = best.min(time);
+                    time
+                };
+                (0..rounds).map(|_| next()).sum()
             });
         });
         if best == Duration::MAX {
