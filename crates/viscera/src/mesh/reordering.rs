@@ -1,7 +1,7 @@
 //! The order of nodes and cells: what is near in space shall be near in memory.
 //!
 //! Steps go through the cells in compact parts whatever their numbers, but read and write the nodes where the mesh has them. Meshers
-//! often number nodes as they were put in, all over the body: a step of 12 288 such tetrahedra takes a tenth longer on one thread, and a third on two,
+//! often number nodes as they were put in, all over the body: a step of 12 288 such tetrahedra takes a tenth longer on one thread, and a quarter on two,
 //! which have to share every line of memory.
 
 use super::{Mesh, MeshError, NamedRegion, VolumeMesh, partition};
