@@ -17,7 +17,7 @@ pub(crate) enum MeshCommand {
     Convert {
         #[command(flatten)]
         source: MeshSource,
-        /// Number nodes and cells anew, neighbours near one another: meshes whose numbers are all over the body step slower.
+        /// Number nodes and cells anew, neighbours near one another, where that is better: meshes whose numbers are all over the body step slower.
         #[arg(long)]
         reorder: bool,
         /// The file to write (.vtu or .msh), in metres.

@@ -19,11 +19,14 @@ pub(super) fn convert(source: &MeshSource, reorder: bool, out: &Path) -> Result<
             return write_volume(out, &mesh);
         }
         let ordered = mesh.reordered().map_err(|error| source.blame(error))?.mesh;
-        say(&format!(
-            "numbers of a cell's nodes lie {} apart in the mean, {} before",
-            grouped(ordered.node_span().round() as usize),
-            grouped(mesh.node_span().round() as usize)
-        ));
+        let [span, before] = [&ordered, &mesh].map(|mesh| grouped(mesh.node_span().round() as usize));
+        if ordered.node_span() >= mesh.node_span() {
+            say(&format!(
+                "numbers of a cell's nodes lie {before} apart in the mean: a new order would not be better, and theirs stays"
+            ));
+            return write_volume(out, &mesh);
+        }
+        say(&format!("numbers of a cell's nodes lie {span} apart in the mean, {before} before"));
         write_volume(out, &ordered)
     };
     match source.read()? {

@@ -58,6 +58,11 @@ fn a_mesh_is_reordered_and_says_how_far_its_numbers_were_apart() {
         .says("wrote ordered.msh");
     let told = desk.viscera(&["mesh", "info", "ordered.msh"]).ends_with(0).says("6 144 tetrahedra");
     assert!(!told.out.contains("--reorder"), "{}", told.out);
+    let bar = sample("bar-1-ascii.msh");
+    desk.viscera(&["mesh", "convert", text(&bar), "bar.msh", "--reorder"]).ends_with(0).says("theirs stays");
+    let meshes = [bar, desk.path("bar.msh")].map(|path| read_mesh(path, 1.0).expect("a mesh").mesh);
+    let [ImportedMesh::Tet(before), ImportedMesh::Tet(after)] = meshes else { panic!("tetrahedra") };
+    assert_eq!(after, before);
     let surface = sample("cube-ascii.stl");
     desk.viscera(&["mesh", "convert", text(&surface), "cube.vtu", "--reorder"])
         .ends_with(2)
