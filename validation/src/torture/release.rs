@@ -41,7 +41,7 @@ impl Extent {
     pub(super) fn of(size: Size) -> Self {
         match size {
             Size::Full => Self { cells: [2, 2, 2], steps: [100, 3000], every: 1 },
-            Size::Small => Self { cells: [1, 1, 2], steps: [40, 100], every: EVERY },
+            Size::Small => Self { cells: [1, 1, 2], steps: [40, 150], every: EVERY },
         }
     }
 }

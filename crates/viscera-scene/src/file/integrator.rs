@@ -98,9 +98,10 @@ pub struct FullNewtonFile {
     #[serde(default = "one_in_a_hundred_million")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub tolerance: f64,
-    /// The most iterations; a step that needs more ends the run, a share of the load of a quasi-static one is halved. By default 30.
+    /// The most iterations; a step that needs more is made in up to 64 parts and then ends the run, a share of the load of a quasi-static one
+    /// is halved. By default 30.
     #[serde(default = "thirty")]
-    #[schemars(extend("minimum" = 1))]
+    #[schemars(extend("minimum" = 1, "maximum" = 1_000_000))]
     pub iterations: u32,
 }
 
@@ -116,7 +117,7 @@ pub struct LinearFile {
     pub tolerance: Option<f64>,
     /// How many iterations; with a tolerance, the most, by default 2000.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("minimum" = 1))]
+    #[schemars(extend("minimum" = 1, "maximum" = 1_000_000))]
     pub iterations: Option<u32>,
 }
 

@@ -245,7 +245,8 @@ pub enum StepError {
         /// (V − V0)/V0 that is left.
         error: f64,
     },
-    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 parts of it neither.
+    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 parts of it neither. Forces without a
+    /// potential, of which there may be no solution, take linearised parts then and no error.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) does not converge: after {iterations} iterations of Newton's \
          method {residual:.1e} of its forces are left; the step is undone. Take a shorter step, more iterations (of the \

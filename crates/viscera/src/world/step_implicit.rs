@@ -1,7 +1,7 @@
 use super::step::{MOST_PARTS, Motion, most_deformed_cell, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
-use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Newton};
+use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Refused};
 use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
@@ -10,20 +10,14 @@ use crate::stage::{Stage, Stages};
 /// How often a step that is not solved, or that throws tissue across a hump, is made again in twice as many parts.
 const MOST_DIVISIONS: u32 = 6;
 
-/// Why the step of a body is not to be taken.
-#[derive(Clone, Copy)]
-enum Refused {
-    /// Its equations are not solved.
-    Unsolved(usize, ImplicitReport),
-    /// It gained energy from nobody.
-    GainedEnergy(usize),
-}
+/// A body whose step is not to be taken, why, and what its solver did.
+type Refusal = (usize, Refused, ImplicitReport);
 
 impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
     /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
-    /// So are steps that leave the numbers that there are, and those that gain energy as their scheme does not. A linearised one that still
-    /// does in the shortest parts is taken.
+    /// So are steps that leave the numbers that there are, and those that gain energy as their scheme does not. The shortest parts are taken
+    /// linearised where forces have no potential and full equations still no solution, and with a gain that linearised ones still have.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,
@@ -34,8 +28,7 @@ impl<T: Scalar> World<T> {
         loop {
             let parts = stages.run(Stage::Instruments, || self.approach_in_time(span)) << retries;
             let is_last = retries == MOST_DIVISIONS;
-            let takes_gain = is_last && settings.newton == Newton::Linearised;
-            let (report, refused) = self.advance_implicitly(span, settings, (parts, takes_gain), stages);
+            let (report, refused) = self.advance_implicitly(span, settings, (parts, is_last), stages);
             let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
             if within && refused.is_none() {
                 return Ok(Motion { substeps: parts, retries, implicit: Some(report) });
@@ -50,15 +43,15 @@ impl<T: Scalar> World<T> {
         }
     }
 
-    /// Moves all bodies by equal parts of the step, by those that gain energy too if it `takes_gain`; gives what the solvers did, and the
-    /// first body whose step is not to be taken.
+    /// Moves all bodies by equal parts of the step, in the last attempt or one before; gives what the solvers did, and the first body whose
+    /// step is not to be taken.
     fn advance_implicitly(
         &mut self,
         span: &Span,
         settings: &Implicit,
-        (parts, takes_gain): (u32, bool),
+        (parts, is_last): (u32, bool),
         stages: Stages,
-    ) -> (ImplicitReport, Option<Refused>) {
+    ) -> (ImplicitReport, Option<Refusal>) {
         let gravity = Vec3::from(self.config.gravity).cast();
         let (mut report, mut refused) = (ImplicitReport::NOTHING, None);
         self.begin_attachments();
@@ -78,14 +71,9 @@ impl<T: Scalar> World<T> {
                     continue;
                 }
                 let all = (&mut self.bodies[..], &mut self.implicit[..]);
-                let (own, has_gained) =
-                    stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, stages));
-                let is_unsolved = !own.converged && settings.newton != Newton::Linearised;
-                if is_unsolved {
-                    refused = refused.or(Some(Refused::Unsolved(number, own)));
-                } else if has_gained && !takes_gain {
-                    refused = refused.or(Some(Refused::GainedEnergy(number)));
-                }
+                let (own, why) =
+                    stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, is_last, stages));
+                refused = refused.or(why.map(|why| (number, why, own)));
                 report = report.worst(own);
             }
             self.bodies.iter_mut().for_each(|body| body.state.past.is_known &= parts == 1);
@@ -118,18 +106,17 @@ impl<T: Scalar> World<T> {
         if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
-    fn refusal(&self, refused: Refused) -> StepError {
-        let time = self.time();
-        match refused {
-            Refused::Unsolved(number, report) => {
-                let body = &self.bodies[number];
+    fn refusal(&self, (number, why, report): Refusal) -> StepError {
+        let (time, body) = (self.time(), &self.bodies[number]);
+        let (name, law) = (body.name.clone(), body.law());
+        match why {
+            Refused::Unsolved => {
                 let (iterations, residual) = (report.newton_iterations, report.residual);
-                StepError::NotConverged { time, body: body.name.clone(), law: body.law(), iterations, residual }
+                StepError::NotConverged { time, body: name, law, iterations, residual }
             }
-            Refused::GainedEnergy(number) => {
-                let body = &self.bodies[number];
+            Refused::GainedEnergy => {
                 let (cell, stretch) = most_deformed_cell(body);
-                StepError::GainedEnergy { time, body: body.name.clone(), law: body.law(), cell, stretch }
+                StepError::GainedEnergy { time, body: name, law, cell, stretch }
             }
         }
     }

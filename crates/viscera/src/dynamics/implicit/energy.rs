@@ -33,22 +33,21 @@ const IMBALANCE: f64 = 0.1;
 
 impl<T: Scalar> Group<'_, T> {
     /// Whether the step that is solved gained energy, and not from anybody. Tools, ties and driven nodes may give some, and forces without
-    /// a potential do in any step: they are looked at in linearised steps alone, in those that went astray or are far from balance.
+    /// a potential do in any step: they are looked at in linearised steps alone, in those that went astray, are far from balance or stand in
+    /// for full ones.
     pub(super) fn has_gained(&mut self) -> bool {
         // The energy–momentum scheme keeps energy, and leaves the body where its forces are, at mid-step.
         if !matches!(self.together, Together::Alone(_)) || self.settings.scheme == Scheme::EnergyMomentum {
             return false;
         }
-        let (scheme, newton, went_astray) = (self.settings.scheme, self.settings.newton, self.went_astray);
-        let may_gain = scheme != Scheme::BackwardEuler && self.imbalance > IMBALANCE;
+        let is_bounded = self.settings.scheme == Scheme::BackwardEuler;
+        let is_suspect = self.went_astray || self.stands_in || (!is_bounded && self.imbalance > IMBALANCE);
+        let is_linearised = self.settings.newton == Newton::Linearised || self.stands_in;
         let step = self.member(0);
-        match newton {
-            Newton::Full { .. } => {
-                let share = if scheme == Scheme::BackwardEuler { GAIN } else { GAIN_UNBOUNDED };
-                step.has_potential() && step.has_gained(share)
-            }
-            Newton::Linearised => (went_astray || may_gain) && step.has_gained(GAIN_LINEARISED),
+        if is_linearised {
+            return is_suspect && step.has_gained(GAIN_LINEARISED);
         }
+        step.has_potential() && step.has_gained(if is_bounded { GAIN } else { GAIN_UNBOUNDED })
     }
 }
 

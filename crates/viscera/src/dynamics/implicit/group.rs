@@ -26,18 +26,40 @@ pub(crate) struct Interval<'a, T> {
     pub(crate) drive: &'a Drive<'a, T>,
 }
 
+/// Why a step is not to be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Refused {
+    /// Its equations are not solved.
+    Unsolved,
+    /// It gained energy from nobody.
+    GainedEnergy,
+}
+
 /// Advances bodies that are solved together, in memory of their own, by one step; of all `bodies` of a world and the memory of each.
-/// Gives whether they gained energy, and not from anybody, as well.
+/// Gives why it is not to be taken as well, if so. The last attempt takes more: a linearised step that gains energy, and one in place of full
+/// equations that may have no solution.
 pub(crate) fn advance<T: Scalar>(
     (bodies, memories): (&mut [SimulatedBody<T>], &mut [ImplicitMemory<T>]),
     together: Together<'_, T>,
     settings: &Implicit,
     interval: Interval<'_, T>,
+    is_last: bool,
     stages: Stages,
-) -> (ImplicitReport, bool) {
+) -> (ImplicitReport, Option<Refused>) {
     let numbers = settings.scheme.numbers(false);
-    let mut group =
-        Group { bodies, memories, together, settings, numbers, interval, stages, went_astray: false, imbalance: 0.0 };
+    let mut group = Group {
+        bodies,
+        memories,
+        together,
+        settings,
+        numbers,
+        interval,
+        is_last,
+        stages,
+        went_astray: false,
+        stands_in: false,
+        imbalance: 0.0,
+    };
     group.agree_on_past();
     group.begin();
     let mut report = group.solve();
@@ -48,10 +70,10 @@ pub(crate) fn advance<T: Scalar>(
         group.each(|step| step.start_again());
         report = report.then(group.solve());
     }
-    let has_gained = group.has_gained();
+    let refused = group.refused(&report);
     group.each(|step| step.finish());
     group.finish_ties();
-    (report, has_gained)
+    (report, refused)
 }
 
 /// Bodies that are solved together, in one implicit step.
@@ -62,9 +84,13 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) settings: &'a Implicit,
     pub(super) numbers: Numbers,
     pub(super) interval: Interval<'a, T>,
+    /// Whether there will be no other attempt at this step.
+    is_last: bool,
     pub(super) stages: Stages<'a>,
     /// Whether a linearised step had to be solved in full instead.
     pub(super) went_astray: bool,
+    /// Whether a linearised step stands in for full equations that were not solved.
+    pub(super) stands_in: bool,
     /// Share of the forces that a linearised step left without balance.
     pub(super) imbalance: f64,
 }
@@ -133,11 +159,29 @@ impl<T: Scalar> Group<'_, T> {
         self.each(|step| step.coast());
     }
 
+    /// Solves the step as it was asked for. Forces without a potential jump where cells turn inside out, and full equations may have no solution
+    /// there however short the step: the last attempt is linearised then, and not converged.
     fn solve(&mut self) -> ImplicitReport {
-        match self.settings.newton {
-            Newton::Linearised => self.solve_linearised(),
-            Newton::Full { relative, at_most } => self.solve_in_full(relative, at_most),
+        let newton = self.settings.newton;
+        let Newton::Full { relative, .. } = newton else { return self.solve_linearised() };
+        let report = self.solve_in_full(relative, newton.at_most(self.is_last));
+        if report.converged || !self.is_last || !self.any(|step| !step.has_potential()) {
+            return report;
         }
+        self.stands_in = true;
+        self.each(|step| step.start_again());
+        let linearised = self.solve_linearised();
+        let residual = if self.went_astray { linearised.residual } else { self.imbalance };
+        ImplicitReport { converged: false, residual, ..report.then(linearised) }
+    }
+
+    fn refused(&mut self, report: &ImplicitReport) -> Option<Refused> {
+        let is_linearised = self.settings.newton == Newton::Linearised;
+        if !(report.converged || is_linearised || self.stands_in) {
+            return Some(Refused::Unsolved);
+        }
+        let has_gained = self.has_gained() && !(self.is_last && is_linearised);
+        has_gained.then_some(Refused::GainedEnergy)
     }
 
     /// The forces where the bodies are and what they lack to balance, besides those of ties.

@@ -82,7 +82,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             reactions: zeros(),
             is_linear: false,
             dragged: Vec::with_capacity(nodes),
-            history: Vec::with_capacity(settings.newton.at_most() as usize + 1),
+            history: Vec::with_capacity(settings.newton.at_most(true) as usize + 1),
         }
     }
 

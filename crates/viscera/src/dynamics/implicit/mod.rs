@@ -38,7 +38,7 @@ mod tangent;
 mod ties;
 mod tools;
 
-pub(crate) use group::{Interval, advance};
+pub(crate) use group::{Interval, Refused, advance};
 pub use memory::ImplicitMemory;
 pub use report::ImplicitReport;
 pub use scheme::Scheme;

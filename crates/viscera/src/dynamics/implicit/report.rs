@@ -9,7 +9,7 @@ pub struct ImplicitReport {
     /// linearised one, over its right-hand side in the norm of the preconditioner.
     pub residual: f64,
     /// Whether that is below what was asked for, or the step has come to rest on a crease of its energy. A fixed number of iterations asks for
-    /// nothing.
+    /// nothing. A full step of forces without a potential that has no solution, and is linearised instead, is not.
     pub converged: bool,
     /// Whether a linear solve met a direction of negative curvature: tissue under strong compression.
     pub negative_curvature: bool,

@@ -1,6 +1,9 @@
 use super::Scheme;
-use super::newton::INSTEAD;
+use super::newton::{INSTEAD, PATIENCE};
 use crate::solver::Stop;
+
+/// The most iterations of any kind: each is noted, in memory that is set aside at the start.
+const MOST_ITERATIONS: u32 = 1_000_000;
 
 /// Settings of implicit steps. By default linearised backward Euler, without a matrix in memory, to 1e-4 in at most 100
 /// iterations: what play needs.
@@ -30,8 +33,11 @@ pub enum Newton {
         /// The residual force has to fall below this share of the forces that balance [> 0, < 1], or below what rounding
         /// of the positions makes of them.
         relative: f64,
-        /// The most iterations [≥ 1]. A step that needs more is undone and is an error, unless it has come to rest on a crease of its energy
-        /// ([`ForceModel::has_creases`](crate::model::ForceModel::has_creases)).
+        /// The most iterations [1 to 1e6]. A step that needs more is made in parts; one whose 64th part needs four times as many is undone
+        /// and is an error, unless it has come to rest on a crease of its energy
+        /// ([`ForceModel::has_creases`](crate::model::ForceModel::has_creases)). Where forces have no energy
+        /// ([`ForceModel::has_potential`](crate::model::ForceModel::has_potential)) there may be no solution at all: parts that have none are
+        /// linearised, and the report says that they have not converged.
         at_most: u32,
     },
 }
@@ -61,10 +67,11 @@ pub enum Preconditioning {
 }
 
 impl Newton {
-    /// The most iterations.
-    pub(super) fn at_most(self) -> u32 {
+    /// The most iterations, in the last attempt at a step or one before.
+    pub(super) fn at_most(self, is_last: bool) -> u32 {
         match self {
             Self::Linearised => INSTEAD.1,
+            Self::Full { at_most, .. } if is_last => PATIENCE * at_most,
             Self::Full { at_most, .. } => at_most,
         }
     }
@@ -97,12 +104,13 @@ impl Implicit {
     /// The first setting that makes no sense: its name, its value, what would do.
     pub(crate) fn first_out_of_range(&self) -> Option<(&'static str, f64, &'static str)> {
         let share = |value: f64| value > 0.0 && value < 1.0;
+        let (counts, range) = (1..=MOST_ITERATIONS, "from 1 to a million");
         if let Newton::Full { relative, at_most } = self.newton {
             if !share(relative) {
                 return Some(("newton tolerance", relative, "between 0 and 1"));
             }
-            if at_most == 0 {
-                return Some(("newton iterations", 0.0, "at least 1"));
+            if !counts.contains(&at_most) {
+                return Some(("newton iterations", f64::from(at_most), range));
             }
         }
         if let Stop::Tolerance { relative, .. } = self.linear
@@ -110,8 +118,8 @@ impl Implicit {
         {
             return Some(("linear tolerance", relative, "between 0 and 1"));
         }
-        if self.linear.at_most() == 0 {
-            return Some(("linear iterations", 0.0, "at least 1"));
+        if !counts.contains(&self.linear.at_most()) {
+            return Some(("linear iterations", f64::from(self.linear.at_most()), range));
         }
         self.scheme.first_out_of_range()
     }
