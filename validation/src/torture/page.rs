@@ -3,7 +3,7 @@
 use viscera::model::ModelKind;
 
 use super::elements::DEFORMATIONS;
-use super::ranges::Undone;
+use super::ranges::{RangeTally, Undone};
 use super::release::{DAMPING, Extent, STEP};
 use super::{Combination, Cuts, ElementTally, End, Method, Obstacle, Outcome, Shape, Torture, Trial, ranges, sameness};
 use crate::Report;
@@ -73,6 +73,7 @@ impl Torture {
                 "must come back",
                 "do",
                 "in another shape that holds",
+                "with steps not solved",
                 "undone",
                 "no numbers",
                 "panics",
@@ -95,6 +96,7 @@ impl Torture {
                 count(&has_to),
                 count(&|trial| has_to(trial) && trial.outcome == Outcome::Back),
                 count(&|trial| trial.holds_elsewhere()),
+                count(&|trial| trial.unsolved > 0),
                 count(&|trial| matches!(trial.outcome, Outcome::Undone(_))),
                 count(&|trial| trial.outcome == Outcome::NotANumber),
                 count(&|trial| trial.outcome == Outcome::Panicked),
@@ -112,6 +114,7 @@ impl Torture {
                 "outcome",
                 "why",
                 "steps",
+                "not solved",
                 "disturbed",
                 "deviation",
                 "gain",
@@ -128,6 +131,7 @@ impl Torture {
                 trial.outcome.name().into(),
                 why.into(),
                 trial.steps.to_string(),
+                trial.unsolved.to_string(),
                 trial.disturbances.to_string(),
                 brief(trial.deviation),
                 brief(trial.gain),
@@ -146,7 +150,9 @@ impl Torture {
                  places in a box twice as large; all in one point, on a line, in a plane; mirrored; stretched 1000 times; one \
                  vertex out through the opposite side. It is back when no distance within a cell differs from that at rest by \
                  more than a millionth of the size, and no cell is inverted. Gain: the largest in a step, and peak: the largest \
-                 energy at all, both of the energy at the start, where the forces have a potential.",
+                 energy at all, both of the energy at the start, where the forces have a potential. A step is not solved where its report \
+                 says so: linearised, its linear system; in full, forces without a potential may have no balance to be found, and \
+                 the step is linearised.",
             ))
             .table(methods)
             .text(
@@ -187,7 +193,7 @@ impl Torture {
 
     fn over_ranges(&self, report: Report) -> Report {
         let heads = [
-            &["integrator", "settings", "all steps made"][..],
+            &["integrator", "settings", "all steps made", "some not solved"][..],
             &ranges::KINDS,
             &["no numbers", "panics", "largest gain"],
         ];
@@ -195,11 +201,11 @@ impl Torture {
         for method in Method::all() {
             let of: Vec<_> =
                 self.ranges.iter().filter(|tally| tally.method == method && tally.refused.is_none()).collect();
-            let sum = |number: &dyn Fn(&super::RangeTally) -> u32| {
-                of.iter().map(|tally| number(tally)).sum::<u32>().to_string()
-            };
+            let sum =
+                |number: &dyn Fn(&RangeTally) -> u32| of.iter().map(|tally| number(tally)).sum::<u32>().to_string();
             let conserving = of.iter().filter(|tally| tally.combination.has_energy());
-            let mut row = vec![method.name.into(), sum(&|tally| tally.tried), sum(&|tally| tally.made)];
+            let mut row = vec![method.name.into()];
+            row.extend([sum(&|tally| tally.tried), sum(&|tally| tally.made), sum(&|tally| tally.unsolved)]);
             row.extend(ranges::KINDS.map(|kind| sum(&|tally| tally.undone_as(kind).count() as u32)));
             row.extend([
                 sum(&|tally| tally.not_numbers),

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use viscera::world::{BodyObservables, World, WorldConfig};
 
 use super::combination::{Combination, Method, Stiffness, refusal};
-use super::release::undone;
+use super::release::{is_unsolved, undone};
 use super::shapes::EDGE;
 use crate::setting::plane;
 use crate::{Size, ValidationError};
@@ -29,6 +29,8 @@ pub struct RangeTally {
     pub refused: Option<&'static str>,
     /// Settings in which every step was made.
     pub made: u32,
+    /// Those of them in which the equations of a step were not solved to what is asked.
+    pub unsolved: u32,
     /// Settings in which a step was undone, with an error that says what to do.
     pub undone: Vec<Undone>,
     /// Settings in which a number that is none came through.
@@ -108,6 +110,7 @@ pub(super) fn attempt(combination: Combination, method: Method, size: Size) -> R
         tried: 0,
         refused: None,
         made: 0,
+        unsolved: 0,
         undone: Vec::new(),
         not_numbers: 0,
         panics: 0,
@@ -144,11 +147,15 @@ fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), Vali
     let parts = |seen: &BodyObservables| [seen.kinetic_energy, seen.elastic_energy, seen.gravity_energy];
     let mut before = parts(&world.observe(id));
     let rest = before[2];
+    let mut unsolved = false;
     for _ in 0..STEPS {
-        if let Err(error) = world.step() {
-            let kind = KINDS.into_iter().find(|&name| name == undone(&error)).ok_or(error)?;
-            tally.undone.push(Undone { kind, young, poisson, step });
-            return Ok(());
+        match world.step() {
+            Ok(report) => unsolved |= is_unsolved(&report),
+            Err(error) => {
+                let kind = KINDS.into_iter().find(|&name| name == undone(&error)).ok_or(error)?;
+                tally.undone.push(Undone { kind, young, poisson, step });
+                return Ok(());
+            }
         }
         let now = parts(&world.observe(id));
         if now.iter().any(|part| !part.is_finite()) {
@@ -164,5 +171,6 @@ fn fall(setting: Setting, size: Size, tally: &mut RangeTally) -> Result<(), Vali
         before = now;
     }
     tally.made += 1;
+    tally.unsolved += u32::from(unsolved);
     Ok(())
 }

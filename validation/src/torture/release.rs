@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use viscera::world::{BodyId, BodyObservables, Integrator, StepError, World, WorldConfig};
+use viscera::world::{BodyId, BodyObservables, Integrator, StepError, StepReport, World, WorldConfig};
 
 use super::combination::{Combination, Method, Stiffness, refusal};
 use super::random::Random;
@@ -59,6 +59,8 @@ pub struct Trial {
     pub peak: f64,
     /// Steps made.
     pub steps: u32,
+    /// Those of them whose equations were not solved to what is asked, as the report of the step says.
+    pub unsolved: u32,
     /// Largest difference of a distance within a cell from that at rest, of the size of the body, at the end.
     pub deviation: f64,
     /// How often it was disturbed a little where it balanced.
@@ -124,8 +126,16 @@ pub(super) fn study(size: Size) -> Result<Vec<Trial>, ValidationError> {
 /// Tries a case.
 fn attempt(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> {
     let tried = catch_unwind(AssertUnwindSafe(|| release(case, size, seed)));
-    let without =
-        |outcome| Trial { case, outcome, gain: 0.0, peak: 0.0, steps: 0, deviation: f64::NAN, disturbances: 0 };
+    let without = |outcome| Trial {
+        case,
+        outcome,
+        gain: 0.0,
+        peak: 0.0,
+        steps: 0,
+        unsolved: 0,
+        deviation: f64::NAN,
+        disturbances: 0,
+    };
     match tried {
         Ok(Ok(trial)) => Ok(trial),
         Ok(Err(error)) => refusal(&error).map(|why| without(Outcome::Refused(why))).ok_or(error),
@@ -139,8 +149,16 @@ fn release(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> 
     case.shape.put_on(&mut world, id, &mut random);
     // At least what strains of one store: in its mirror image, tissue of a blind law has the energy of roundings.
     let scale = energy(&world.observe(id)).max(Stiffness::SOFT.young * EDGE.powi(3));
-    let mut trial =
-        Trial { case, outcome: Outcome::Moving, gain: 0.0, peak: 1.0, steps: 0, deviation: 0.0, disturbances: 0 };
+    let mut trial = Trial {
+        case,
+        outcome: Outcome::Moving,
+        gain: 0.0,
+        peak: 1.0,
+        steps: 0,
+        unsolved: 0,
+        deviation: 0.0,
+        disturbances: 0,
+    };
     loop {
         trial.settle(&mut world, id, scale, size);
         let Outcome::Elsewhere { inverted, .. } = trial.outcome else { return Ok(trial) };
@@ -161,12 +179,16 @@ impl Trial {
         let Extent { steps: [patience, steps], .. } = Extent::of(size);
         let (start, mut before) = (self.steps, energy(&world.observe(id)));
         while self.steps - start < steps {
-            if let Err(error) = world.step() {
-                self.outcome = Outcome::Undone(undone(&error));
-                self.deviation = deviation(world, id);
-                return;
-            }
+            let report = match world.step() {
+                Ok(report) => report,
+                Err(error) => {
+                    self.outcome = Outcome::Undone(undone(&error));
+                    self.deviation = deviation(world, id);
+                    return;
+                }
+            };
             self.steps += 1;
+            self.unsolved += u32::from(is_unsolved(&report));
             let seen = world.observe(id);
             let now = energy(&seen);
             if !now.is_finite() || !world.body(id).state().is_finite() {
@@ -263,6 +285,11 @@ fn difference(world: &World<f64>, id: BodyId, other: &[Vector]) -> f64 {
 fn is_at_rest(world: &World<f64>, id: BodyId) -> bool {
     let body = world.body(id);
     body.velocities().iter().all(|v| v.norm() < BACK * body.mesh().size())
+}
+
+/// Whether equations of the step were not solved to what is asked.
+pub(super) fn is_unsolved(report: &StepReport) -> bool {
+    report.implicit.is_some_and(|implicit| !implicit.converged)
 }
 
 pub(super) fn undone(error: &StepError) -> &'static str {
