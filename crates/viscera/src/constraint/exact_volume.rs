@@ -85,17 +85,21 @@ impl ExactVolume {
         self.triangles.iter().map(move |corners| corners.map(|place| at(self.nodes[place as usize]) - origin))
     }
 
-    /// Volume [m³], and what rounding of the coordinates to numbers of type `T` makes uncertain of it.
+    /// Volume [m³], and what is uncertain of it: by rounding of the coordinates to numbers of type `T`, and of the sum over the triangles,
+    /// whose steps add up like those of a random walk.
     pub(crate) fn measure<T: Scalar>(&self, at: impl Fn(u32) -> Point + Copy) -> (f64, f64) {
-        let (mut six_volumes, mut area, mut farthest) = (0.0, 0.0, 0.0f64);
+        let (mut six_volumes, mut sizes, mut area, mut farthest) = (0.0, 0.0, 0.0, 0.0f64);
         for [a, b, c] in self.corners(at) {
-            six_volumes += a.dot(b.cross(c));
+            let own = a.dot(b.cross(c));
+            six_volumes += own;
+            sizes += own.abs();
             area += 0.5 * (b - a).cross(c - a).norm();
         }
+        let summed = f64::EPSILON * (self.triangles.len() as f64).sqrt() * sizes;
         for &node in &self.nodes {
             farthest = farthest.max(at(node).norm());
         }
-        (six_volumes / 6.0, nearer_than_rounding::<T>(farthest) * area)
+        (six_volumes / 6.0, nearer_than_rounding::<T>(farthest) * area + summed / 6.0)
     }
 
     /// Finds g at the places before the drift, and with it u.

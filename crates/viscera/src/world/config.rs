@@ -40,7 +40,7 @@ pub enum Substep {
     /// As few as are stable, found anew in every step.
     #[default]
     Automatic,
-    /// Sub-steps no longer than this [s, > 0, at least a hundred-thousandth of the step]. One that is not stable is refused when a body is added, and when the
+    /// Sub-steps no longer than this [s, > 0, at least a millionth of the step]. One that is not stable is refused when a body is added, and when the
     /// tissue stiffens so much that it stops being so.
     Fixed(f64),
 }
@@ -65,7 +65,7 @@ impl WorldConfig {
                 out_of_range("substep", value, "positive [s]")
             }
             Integrator::Explicit(Substep::Fixed(value)) if self.step / value > MAX_SUBSTEPS => {
-                out_of_range("substep", value, "at least a hundred-thousandth of the step [s]")
+                out_of_range("substep", value, "at least a millionth of the step [s]")
             }
             Integrator::Implicit(settings) => match settings.first_out_of_range() {
                 Some((name, value, range)) => out_of_range(name, value, range),

@@ -211,9 +211,9 @@ pub enum StepError {
         /// What to do.
         advice: &'static str,
     },
-    /// The tissue is so deformed, and so stiff, that a step would need too many sub-steps.
+    /// The tissue is so stiff, at rest or because it is deformed, that a step would need too many sub-steps.
     #[error(
-        "at {time:.4} s body `{body}` ({law}) would need {substeps:.0} sub-steps in one step of {step} s, because cell {cell} is stretched {stretch:.3} times; the step is undone. Pull it less, or take a softer law"
+        "at {time:.4} s body `{body}` ({law}) would need {substeps:.1e} sub-steps in one step of {step:.1e} s; cell {cell} is stretched {stretch:.3} times, most of all; the step is undone. {advice}"
     )]
     TooStiff {
         /// Time at the beginning of the step [s].
@@ -230,6 +230,8 @@ pub enum StepError {
         substeps: f64,
         /// Length of the step [s].
         step: f64,
+        /// What to do.
+        advice: &'static str,
     },
     /// A volume that is to be kept exactly cannot be.
     #[error(

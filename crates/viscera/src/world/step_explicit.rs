@@ -8,6 +8,7 @@ use crate::dynamics::tied::Aim;
 use crate::dynamics::{Drive, explicit};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
+use crate::model::Scratch;
 use crate::stage::{Stage, Stages};
 
 /// The most sub-steps that are planned for a step.
@@ -206,11 +207,22 @@ impl<T: Scalar> World<T> {
         let body = &self.bodies[fastest.body];
         let (cell, stretch) = most_deformed_cell(body);
         let (time, law, step) = (self.time(), body.law(), self.config.step);
-        StepError::TooStiff { time, body: body.name.clone(), law, cell, stretch, substeps, step }
+        let advice = if body.substeps_at_rest(step) < 0.5 * substeps {
+            "Pull it less, or take a softer law"
+        } else {
+            "It is as stiff at rest: take a shorter step, an implicit integrator, softer or denser tissue, or coarser cells"
+        };
+        StepError::TooStiff { time, body: body.name.clone(), law, cell, stretch, substeps, step, advice }
     }
 }
 
 impl<T: Scalar> SimulatedBody<T> {
+    /// How many sub-steps the tissue takes for a time [s] at rest.
+    fn substeps_at_rest(&self, time: f64) -> f64 {
+        let rest: Vec<_> = self.mesh.nodes().iter().map(|node| node.cast()).collect();
+        explicit::substeps_for(time, self.frequency.squared_frequency(&rest, &mut Scratch::new(rest.len())))
+    }
+
     /// The fastest that two corners of a cell go apart or about each other, of their distance now or at rest, whichever is larger [1/s].
     fn strain_rate(&self) -> f64 {
         let state = &self.state;

@@ -89,6 +89,30 @@ fn the_refusal_names_the_body_that_is_too_fast() {
     assert_eq!(body, "stiff");
 }
 
+/// Tissue that would need too many sub-steps is told whether it is as stiff at rest, in a message that can be read.
+#[test]
+fn too_stiff_tissue_is_told_what_makes_it_so() {
+    let bar = |young| {
+        let mut world = World::<f64>::new(WorldConfig { gravity: [0.0; 3], ..WorldConfig::default() }).unwrap();
+        let mesh = TetMesh::box_grid([2, 2, 8], [0.04, 0.04, 0.16]);
+        let id = world.add(Body::new(mesh, DENSITY).model(TotalLagrangian::new(stvk(young, 0.3)))).unwrap();
+        (world, id)
+    };
+    let said = |error: StepError| {
+        assert!(matches!(error, StepError::TooStiff { .. }), "{error}");
+        error.to_string()
+    };
+    for young in [1e18, 1e90] {
+        let (mut world, _) = bar(young);
+        let message = said(world.step().unwrap_err());
+        assert!(message.len() < 400 && message.contains("as stiff at rest: take a shorter step"), "{message}");
+    }
+    let (mut world, id) = bar(1e4);
+    world.body_mut(id).set_positions(|x| x * 1e7);
+    let message = said(world.step().unwrap_err());
+    assert!(message.contains("stretched 10000000.000 times") && message.ends_with("take a softer law"), "{message}");
+}
+
 /// A world without bodies has nothing to be refused for.
 #[test]
 fn an_empty_world_only_lets_time_pass() {
