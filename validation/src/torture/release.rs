@@ -126,16 +126,7 @@ pub(super) fn study(size: Size) -> Result<Vec<Trial>, ValidationError> {
 /// Tries a case.
 fn attempt(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> {
     let tried = catch_unwind(AssertUnwindSafe(|| release(case, size, seed)));
-    let without = |outcome| Trial {
-        case,
-        outcome,
-        gain: 0.0,
-        peak: 0.0,
-        steps: 0,
-        unsolved: 0,
-        deviation: f64::NAN,
-        disturbances: 0,
-    };
+    let without = |outcome| Trial { outcome, peak: 0.0, deviation: f64::NAN, ..Trial::begun(case) };
     match tried {
         Ok(Ok(trial)) => Ok(trial),
         Ok(Err(error)) => refusal(&error).map(|why| without(Outcome::Refused(why))).ok_or(error),
@@ -149,16 +140,7 @@ fn release(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> 
     case.shape.put_on(&mut world, id, &mut random);
     // At least what strains of one store: in its mirror image, tissue of a blind law has the energy of roundings.
     let scale = energy(&world.observe(id)).max(Stiffness::SOFT.young * EDGE.powi(3));
-    let mut trial = Trial {
-        case,
-        outcome: Outcome::Moving,
-        gain: 0.0,
-        peak: 1.0,
-        steps: 0,
-        unsolved: 0,
-        deviation: 0.0,
-        disturbances: 0,
-    };
+    let mut trial = Trial::begun(case);
     loop {
         trial.settle(&mut world, id, scale, size);
         let Outcome::Elsewhere { inverted, .. } = trial.outcome else { return Ok(trial) };
@@ -174,6 +156,12 @@ fn release(case: Case, size: Size, seed: u64) -> Result<Trial, ValidationError> 
 }
 
 impl Trial {
+    /// Before the first step.
+    fn begun(case: Case) -> Self {
+        let (outcome, gain, peak, deviation) = (Outcome::Moving, 0.0, 1.0, 0.0);
+        Self { case, outcome, gain, peak, steps: 0, unsolved: 0, deviation, disturbances: 0 }
+    }
+
     /// Lets the body move until it is back or at rest elsewhere, as long as there is time, or a step is undone.
     fn settle(&mut self, world: &mut World<f64>, id: BodyId, scale: f64, size: Size) {
         let Extent { steps: [patience, steps], .. } = Extent::of(size);

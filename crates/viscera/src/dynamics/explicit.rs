@@ -42,13 +42,20 @@ impl<T: Scalar> SimulatedBody<T> {
         if self.answer.is_some() {
             return f64::INFINITY;
         }
-        let positions = &self.state.positions;
-        let measure = || {
-            let mut scratch = Scratch::new(positions.len());
-            let of_tissue = self.frequency.squared_frequency(positions, &mut scratch);
-            of_tissue + self.external_squared_frequency(&mut scratch.forces)
-        };
-        stable_step(self.state.squared_frequency.unwrap_or_else(measure))
+        let known = self.state.squared_frequency;
+        stable_step(known.unwrap_or_else(|| self.squared_frequency_at(&self.state.positions)))
+    }
+
+    /// Sub-steps that a step [s] would take if the body were at rest.
+    pub(crate) fn substeps_at_rest(&self, step: f64) -> f64 {
+        substeps_for(step, self.squared_frequency_at(&self.rest))
+    }
+
+    /// Bound of ω_max² with the tissue at these places [1/s²].
+    fn squared_frequency_at(&self, positions: &[Vec3<T>]) -> f64 {
+        let mut scratch = Scratch::new(positions.len());
+        let of_tissue = self.frequency.squared_frequency(positions, &mut scratch);
+        of_tissue + self.external_squared_frequency(&mut scratch.forces)
     }
 
     /// The cell that sets the stable step as the body is now; none in a body that does not vibrate.

@@ -8,7 +8,6 @@ use crate::dynamics::tied::Aim;
 use crate::dynamics::{Drive, explicit};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
-use crate::model::Scratch;
 use crate::stage::{Stage, Stages};
 
 /// The most sub-steps that are planned for a step.
@@ -217,12 +216,6 @@ impl<T: Scalar> World<T> {
 }
 
 impl<T: Scalar> SimulatedBody<T> {
-    /// How many sub-steps the tissue takes for a time [s] at rest.
-    fn substeps_at_rest(&self, time: f64) -> f64 {
-        let rest: Vec<_> = self.mesh.nodes().iter().map(|node| node.cast()).collect();
-        explicit::substeps_for(time, self.frequency.squared_frequency(&rest, &mut Scratch::new(rest.len())))
-    }
-
     /// The fastest that two corners of a cell go apart or about each other, of their distance now or at rest, whichever is larger [1/s].
     fn strain_rate(&self) -> f64 {
         let state = &self.state;

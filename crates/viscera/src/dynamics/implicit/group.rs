@@ -175,13 +175,14 @@ impl<T: Scalar> Group<'_, T> {
         ImplicitReport { converged: false, residual, ..report.then(linearised) }
     }
 
+    /// Why what was solved is not to be taken, if so.
     fn refused(&mut self, report: &ImplicitReport) -> Option<Refused> {
         let is_linearised = self.settings.newton == Newton::Linearised;
         if !(report.converged || is_linearised || self.stands_in) {
             return Some(Refused::Unsolved);
         }
-        let has_gained = self.has_gained() && !(self.is_last && is_linearised);
-        has_gained.then_some(Refused::GainedEnergy)
+        let may_gain = self.is_last && is_linearised;
+        (!may_gain && self.has_gained()).then_some(Refused::GainedEnergy)
     }
 
     /// The forces where the bodies are and what they lack to balance, besides those of ties.
