@@ -79,6 +79,7 @@ impl Torture {
                 "panics",
                 "largest gain",
                 "peak",
+                "gain without a potential",
             ],
         );
         for method in Method::all() {
@@ -86,9 +87,11 @@ impl Torture {
             let count = |good: &dyn Fn(&Trial) -> bool| of.iter().filter(|trial| good(trial)).count().to_string();
             let refused = |trial: &Trial| matches!(trial.outcome, Outcome::Refused(_));
             let has_to = |trial: &Trial| !refused(trial) && trial.case.obstacle().is_none() && !trial.holds_elsewhere();
-            let conserving = of.iter().filter(|trial| trial.case.combination.has_energy());
-            let (gain, peak) = conserving
-                .fold((0.0, 0.0), |(gain, peak): (f64, f64), trial| (gain.max(trial.gain), peak.max(trial.peak)));
+            let (conserving, others): (Vec<&Trial>, _) =
+                of.iter().copied().partition(|trial| trial.case.combination.has_energy());
+            let most = |trials: &[&Trial], number: fn(&Trial) -> f64| {
+                trials.iter().map(|trial| number(trial)).fold(0.0, f64::max)
+            };
             methods.push(vec![
                 method.name.into(),
                 count(&|trial| !refused(trial)),
@@ -100,8 +103,9 @@ impl Torture {
                 count(&|trial| matches!(trial.outcome, Outcome::Undone(_))),
                 count(&|trial| trial.outcome == Outcome::NotANumber),
                 count(&|trial| trial.outcome == Outcome::Panicked),
-                brief(gain),
-                brief(peak),
+                brief(most(&conserving, |trial| trial.gain)),
+                brief(most(&conserving, |trial| trial.peak)),
+                brief(most(&others, |trial| trial.gain)),
             ]);
         }
         let mut all = Table::new(
@@ -150,8 +154,8 @@ impl Torture {
                  places in a box twice as large; all in one point, on a line, in a plane; mirrored; stretched 1000 times; one \
                  vertex out through the opposite side. It is back when no distance within a cell differs from that at rest by \
                  more than a millionth of the size, and no cell is inverted. Gain: the largest in a step, and peak: the largest \
-                 energy at all, both of the energy at the start, where the forces have a potential. A step is not solved where its report \
-                 says so: linearised, its linear system; in full, forces without a potential may have no balance to be found, and \
+                 energy at all, both of the energy at the start, where the forces have a potential; where they have none, or it jumps, \
+                 any step may gain. A step is not solved where its report says so: linearised, its linear system; in full, forces without a potential may have no balance to be found, and \
                  the step is linearised.",
             ))
             .table(methods)

@@ -266,10 +266,11 @@ pub enum StepError {
         /// What is left of the forces, over those that balance.
         residual: f64,
     },
-    /// Full equations have solutions only that gain energy from nobody, more than their scheme does, in 64 parts of the step too.
+    /// Whatever was found gains energy from nobody, more than its scheme does, in 64 parts of the step too: solutions of the full equations,
+    /// or the linearised parts that stand in for those that have none.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \
-         which is stretched {stretch:.3} times before the step: all solutions that were found gain energy; the step is undone. Take a \
+         which is stretched {stretch:.3} times before the step: all ways that were found gain energy; the step is undone. Take a \
          shorter step, or the linearised one, or let the tissue go from less far"
     )]
     GainedEnergy {

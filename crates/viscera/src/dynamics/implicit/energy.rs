@@ -23,7 +23,8 @@ use crate::solver::Filter;
 
 /// A step of backward Euler that is solved in full gains no more than this share of the energies that are about.
 const GAIN: f64 = 1e-6;
-/// The same for schemes without a bound.
+/// The same for schemes without a bound, and for forces without a potential: node-wise stiffness warping gained 2.7 times its energy in a step
+/// of Newmark's method, and gains 0.6 in parts.
 const GAIN_UNBOUNDED: f64 = 0.1;
 /// A linearised step that is looked at gains no more than this share.
 const GAIN_LINEARISED: f64 = 0.01;
@@ -32,9 +33,8 @@ const GAIN_LINEARISED: f64 = 0.01;
 const IMBALANCE: f64 = 0.1;
 
 impl<T: Scalar> Group<'_, T> {
-    /// Whether the step that is solved gained energy, and not from anybody. Tools, ties and driven nodes may give some, and forces without
-    /// a potential do in any step: they are looked at in linearised steps alone, in those that went astray, are far from balance or stand in
-    /// for full ones.
+    /// Whether the step that is solved gained energy, and not from anybody: tools, ties and driven nodes may give some. Linearised steps are
+    /// looked at where they went astray, are far from balance or stand in for full ones.
     pub(super) fn has_gained(&mut self) -> bool {
         // The energy–momentum scheme keeps energy, and leaves the body where its forces are, at mid-step.
         if !matches!(self.together, Together::Alone(_)) || self.settings.scheme == Scheme::EnergyMomentum {
@@ -47,7 +47,7 @@ impl<T: Scalar> Group<'_, T> {
         if is_linearised {
             return is_suspect && step.has_gained(GAIN_LINEARISED);
         }
-        step.has_potential() && step.has_gained(if is_bounded { GAIN } else { GAIN_UNBOUNDED })
+        step.has_gained(if is_bounded && step.has_potential() { GAIN } else { GAIN_UNBOUNDED })
     }
 }
 
