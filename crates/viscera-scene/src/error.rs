@@ -11,7 +11,7 @@ use std::ops::Range;
 /// error: unknown key `youngs`, did you mean `young`?
 ///   ┌─ scenes/liver.toml:12:3
 /// 12 │   youngs = "5 kPa"
-///    │   ^^^^^^ a law of kind `st-venant-kirchhoff` knows: young, poisson, lambda, mu, fibre, tissue
+///    │   ^^^^^^ a law knows: young, poisson, lambda, mu, fibre, tissue
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", render(self))]

@@ -60,12 +60,13 @@ pub(super) fn subject(title: &str, node: &Node) -> String {
     }
 }
 
-/// "a law of kind `linear` knows: young, poisson, …".
+/// "an instrument of kind `probe` knows: path, radius, …", "a law knows: young, poisson, …" where one schema is that of every kind.
 pub(super) fn known_list(schema: &Map<String, Json>, title: &str, node: &Node) -> String {
-    let properties = schema.get("properties").and_then(Json::as_object);
-    let keys: Vec<_> =
-        properties.into_iter().flatten().map(|(key, _)| key.as_str()).filter(|key| *key != "kind").collect();
-    format!("{} knows: {}", subject(title, node), keys.join(", "))
+    let properties = || schema.get("properties").and_then(Json::as_object).into_iter().flatten();
+    let keys: Vec<_> = properties().map(|(key, _)| key.as_str()).filter(|key| *key != "kind").collect();
+    let is_of_kind = properties().any(|(_, schema)| schema.get("const").is_some());
+    let subject = if is_of_kind { subject(title, node) } else { with_article(title) };
+    format!("{subject} knows: {}", keys.join(", "))
 }
 
 /// The name that a word is, or that a misspelt or shortened one comes nearest to, if any is near.
