@@ -1,5 +1,5 @@
 use viscera::body::Body;
-use viscera::mesh::{Region, TetMesh};
+use viscera::mesh::{HexMesh, Region, TetMesh, VolumeMesh};
 use viscera::model::{MassSpring, ModelRecipe, ShapeMemory};
 use viscera::world::BodyObservables;
 
@@ -29,6 +29,23 @@ fn a_layer_turned_inside_out_comes_back_and_in_a_net_of_springs_it_stays() {
         let (_, after) = dragged_through(Box::new(MassSpring::new(tissue())), phase);
         assert_eq!(after.inverted_cells, 54);
         assert!(after.max_displacement > 0.05, "the net is {} m from rest", after.max_displacement);
+    }
+}
+
+/// Free tissue that is all in one point comes back from there: nothing turns it, and how fast it may is known all the same. Once no frequency
+/// was, and steps diverged at once.
+#[test]
+fn explicit_steps_lead_out_of_one_point() {
+    let meshes: [VolumeMesh; 2] =
+        [TetMesh::box_grid([2; 3], [0.1; 3]).into(), HexMesh::box_grid([2; 3], [0.1; 3]).into()];
+    for mesh in meshes {
+        let body = Body::new(mesh, DENSITY).model(ShapeMemory::new(tissue())).damping(50.0);
+        let (mut world, id) = world::<f64>([0.0; 3], body);
+        world.body_mut(id).set_positions(|_| Vector::splat(0.05));
+        run(&mut world, 2.0);
+        let seen = world.observe(id);
+        assert_eq!(seen.inverted_cells, 0);
+        assert!(seen.max_displacement < 1e-7, "{} m from rest", seen.max_displacement);
     }
 }
 

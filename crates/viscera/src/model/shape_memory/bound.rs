@@ -5,8 +5,8 @@
 //!
 //! dx·K dx ≤ Σ_i k_i (Σ_j a_ij |dx_j|)² ≤ Σ_j |dx_j|² Σ_i k_i A_i a_ij,   ω² ≤ max_j Σ_i k_i A_i a_ij/m_j
 //!
-//! Close to where a rotation jumps no bound holds: g is not taken larger than neighbours so ill placed would have it, and stands for
-//! ‖G⁻¹‖ then.
+//! Close to where a rotation jumps no bound holds: g is not taken larger than neighbours so ill placed, or so close to one point, would
+//! have it, and stands for ‖G⁻¹‖ then.
 
 use super::neighbourhoods::Neighbourhoods;
 use crate::math::rotation::polar;
@@ -16,6 +16,8 @@ use crate::model::frequency::FrequencyBound;
 
 /// 1/(g ‖F‖) at least, or half of that at rest where the neighbours are worse placed then.
 const ILL_PLACED: f64 = 0.1;
+/// ‖F‖ over that at rest below which the neighbours are as good as in one point.
+const COLLAPSED: f64 = 0.1;
 /// Newton steps to the smallest eigenvalue, from below.
 const ROOT_STEPS: usize = 6;
 
@@ -57,9 +59,9 @@ impl MemoryBound {
             at_rest += nodes.arms[entry].outer(nodes.arms[entry]);
         }
         let rotation = polar(&(covariance * own.unit * own.unit));
-        let size = covariance.squared_norm().sqrt();
-        let least =
-            ILL_PLACED.min(0.5 * least_stretch(&stretches(&at_rest, &Mat3::IDENTITY)) / at_rest.squared_norm().sqrt());
+        let size_at_rest = at_rest.squared_norm().sqrt();
+        let size = covariance.squared_norm().sqrt().max(COLLAPSED * size_at_rest);
+        let least = ILL_PLACED.min(0.5 * least_stretch(&stretches(&at_rest, &Mat3::IDENTITY)) / size_at_rest);
         let matrix = stretches(&covariance, &rotation);
         let smallest = least_stretch(&matrix);
         let g = 1.0 / smallest.max(least * size);
