@@ -267,11 +267,11 @@ pub enum StepError {
         residual: f64,
     },
     /// Whatever was found gains energy from nobody, more than its scheme does, in 64 parts of the step too: solutions of the full equations,
-    /// or the linearised parts that stand in for those that have none.
+    /// the linearised parts that stand in for those that have none, or linearised parts with ten times as much energy as before.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \
          which is stretched {stretch:.3} times before the step: all ways that were found gain energy; the step is undone. Take a \
-         shorter step, or the linearised one, or let the tissue go from less far"
+         shorter step, or {advice}, or let the tissue go from less far"
     )]
     GainedEnergy {
         /// Time at the beginning of the step [s].
@@ -284,6 +284,8 @@ pub enum StepError {
         cell: usize,
         /// Largest length of one of its edges over that at rest.
         stretch: f64,
+        /// Settings that bear such a step.
+        advice: &'static str,
     },
     /// There is no equilibrium to go on to, or none was found.
     #[error("at {time:.4} s {error}; the step is undone")]

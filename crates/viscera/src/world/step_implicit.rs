@@ -1,7 +1,7 @@
 use super::step::{MOST_PARTS, Motion, most_deformed_cell, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
-use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Refused};
+use crate::dynamics::implicit::{self, Implicit, ImplicitReport, Interval, Newton, Refused, Scheme};
 use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
@@ -17,7 +17,8 @@ impl<T: Scalar> World<T> {
     /// Moves the bodies by one implicit step. A linear solve that ended early is reported. Full equations that are not solved are those of
     /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
     /// So are steps that leave the numbers that there are, and those that gain energy as their scheme does not. The shortest parts are taken
-    /// linearised where forces have no potential and full equations still no solution, and with a gain that linearised ones still have.
+    /// linearised where forces have no potential and full equations still no solution, and with a gain that linearised ones still have, short of
+    /// ten times the energy before.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,
@@ -37,7 +38,7 @@ impl<T: Scalar> World<T> {
             if is_last {
                 return Err(refused
                     .filter(|_| within)
-                    .map_or_else(|| self.diverged(), |refused| self.refusal(refused)));
+                    .map_or_else(|| self.diverged(), |refused| self.refusal(refused, settings)));
             }
             retries += 1;
         }
@@ -106,7 +107,7 @@ impl<T: Scalar> World<T> {
         if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
 
-    fn refusal(&self, (number, why, report): Refusal) -> StepError {
+    fn refusal(&self, (number, why, report): Refusal, settings: &Implicit) -> StepError {
         let (time, body) = (self.time(), &self.bodies[number]);
         let (name, law) = (body.name.clone(), body.law());
         match why {
@@ -116,7 +117,13 @@ impl<T: Scalar> World<T> {
             }
             Refused::GainedEnergy => {
                 let (cell, stretch) = most_deformed_cell(body);
-                StepError::GainedEnergy { time, body: name, law, cell, stretch }
+                let is_linearised = settings.newton == Newton::Linearised;
+                let advice = match settings.scheme {
+                    _ if !is_linearised => "the linearised one",
+                    Scheme::BackwardEuler => "solve it in full",
+                    _ => "backward Euler",
+                };
+                StepError::GainedEnergy { time, body: name, law, cell, stretch, advice }
             }
         }
     }

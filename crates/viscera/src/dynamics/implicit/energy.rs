@@ -28,6 +28,8 @@ const GAIN: f64 = 1e-6;
 const GAIN_UNBOUNDED: f64 = 0.1;
 /// A linearised step that is looked at gains no more than this share.
 const GAIN_LINEARISED: f64 = 0.01;
+/// And in the last attempt no more than this: what makes nine tenths of the energies that are about anew has ten times as much as before.
+const GAIN_AT_LAST: f64 = 0.9;
 /// A linearised step that leaves more than this share of the forces without balance is looked at, with schemes without a bound: half the work of
 /// what is left is what Newmark's method gains. Corotational tissue, stretched a thousand times and let go, came to 5e7 times its energy.
 const IMBALANCE: f64 = 0.1;
@@ -43,9 +45,10 @@ impl<T: Scalar> Group<'_, T> {
         let is_bounded = self.settings.scheme == Scheme::BackwardEuler;
         let is_suspect = self.went_astray || self.stands_in || (!is_bounded && self.imbalance > IMBALANCE);
         let is_linearised = self.settings.newton == Newton::Linearised || self.stands_in;
+        let may_gain = self.is_last && !self.stands_in;
         let step = self.member(0);
         if is_linearised {
-            return is_suspect && step.has_gained(GAIN_LINEARISED);
+            return is_suspect && step.has_gained(if may_gain { GAIN_AT_LAST } else { GAIN_LINEARISED });
         }
         step.has_gained(if is_bounded && step.has_potential() { GAIN } else { GAIN_UNBOUNDED })
     }

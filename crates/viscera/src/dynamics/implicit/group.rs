@@ -36,8 +36,8 @@ pub(crate) enum Refused {
 }
 
 /// Advances bodies that are solved together, in memory of their own, by one step; of all `bodies` of a world and the memory of each.
-/// Gives why it is not to be taken as well, if so. The last attempt takes more: a linearised step that gains energy, and one in place of full
-/// equations that may have no solution.
+/// Gives why it is not to be taken as well, if so. The last attempt takes more: a linearised step that gains some energy, and one in place of
+/// full equations that may have no solution.
 pub(crate) fn advance<T: Scalar>(
     (bodies, memories): (&mut [SimulatedBody<T>], &mut [ImplicitMemory<T>]),
     together: Together<'_, T>,
@@ -85,7 +85,7 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) numbers: Numbers,
     pub(super) interval: Interval<'a, T>,
     /// Whether there will be no other attempt at this step.
-    is_last: bool,
+    pub(super) is_last: bool,
     pub(super) stages: Stages<'a>,
     /// Whether a linearised step had to be solved in full instead.
     pub(super) went_astray: bool,
@@ -181,8 +181,7 @@ impl<T: Scalar> Group<'_, T> {
         if !(report.converged || is_linearised || self.stands_in) {
             return Some(Refused::Unsolved);
         }
-        let may_gain = self.is_last && is_linearised;
-        (!may_gain && self.has_gained()).then_some(Refused::GainedEnergy)
+        self.has_gained().then_some(Refused::GainedEnergy)
     }
 
     /// The forces where the bodies are and what they lack to balance, besides those of ties.
