@@ -117,10 +117,9 @@ impl<T: Scalar> World<T> {
             }
             Refused::GainedEnergy => {
                 let (cell, stretch) = most_deformed_cell(body);
-                let is_linearised = settings.newton == Newton::Linearised;
-                let advice = match settings.scheme {
-                    _ if !is_linearised => "the linearised one",
-                    Scheme::BackwardEuler => "solve it in full",
+                let advice = match (settings.scheme, settings.newton) {
+                    (Scheme::BackwardEuler, Newton::Linearised) => "solve it in full",
+                    (Scheme::BackwardEuler, Newton::Full { .. }) => "the linearised one",
                     _ => "backward Euler",
                 };
                 StepError::GainedEnergy { time, body: name, law, cell, stretch, advice }

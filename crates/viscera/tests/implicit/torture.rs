@@ -190,6 +190,31 @@ fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
     assert!(said > 0);
 }
 
+/// In the last attempt no iteration climbs, and linear solves have four times as many iterations. Let go at a thousand times their length, free tissue
+/// integrated at the nodes gained energy in 64 parts too and was undone in the first step; hexahedra of neo-Hookean tissue in the ninth,
+/// with 8e-7 of their forces left after 400 iterations of Newton's method whose linear solves ended after 100.
+#[test]
+fn the_last_attempt_finds_what_others_do_not() {
+    let newton = Newton::Full { relative: 1e-8, at_most: 100 };
+    let linear = Stop::Tolerance { relative: 1e-6, at_most: 100 };
+    let settings = Implicit { newton, linear, ..Implicit::accurate(Scheme::BackwardEuler) };
+    let stable = uniform(StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap());
+    let free = Body::new(TetMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(NodallyIntegrated::new(stable));
+    let held = Body::new(HexMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(TotalLagrangian::new(neo_hookean()));
+    for body in [free, held.fix(root())] {
+        let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, settings, body.damping(50.0));
+        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
+        let (mut before, mut last) = (energy(&mut world, id), 0);
+        for _ in 0..30 {
+            last += usize::from(world.step().unwrap().retries == 6);
+            let now = energy(&mut world, id);
+            assert!(now <= before, "{now} J after {before} J");
+            before = now;
+        }
+        assert!(last > 0);
+    }
+}
+
 /// Forces that are not the gradient of an energy gain some of what is called so in any step: full steps of warped stiffness were taken for
 /// failures and undone, the fourth of these at a stretch of 1.0002.
 #[test]
@@ -252,32 +277,36 @@ fn full_steps_that_gain_much_without_a_potential_are_made_in_parts() {
     }
 }
 
-/// Newmark's method has no bound. Linearised steps that have ten times the energy of before in the shortest parts too are undone and say so, as
-/// those in full: plain neo-Hookean tissue, let go at a thousand times its length or more, rose to 1e26 times its energy, until nodes were
-/// thrown a million sizes away.
+/// Newmark's method has no bound. Steps that gain in the shortest parts too, in full a tenth, linearised ten times the energy of before, are
+/// undone and say so: plain neo-Hookean tissue, let go at a thousand times its length or more, linearised, rose to 1e26 times its energy,
+/// until nodes were thrown a million sizes away.
 #[test]
-fn a_linearised_step_that_makes_most_of_its_energy_anew_is_undone() {
-    let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, ..Implicit::default() };
-    let mut said = 0;
-    for length in (0..20).map(|number| 1000.0 * 1.05_f64.powi(number)) {
-        let (mut world, id) = cube(tetrahedra(), TotalLagrangian::new(neo_hookean()), settings);
-        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, length * x.z));
-        let start = energy(&mut world, id);
-        for _ in 0..60 {
-            let before = world.body(id).positions().to_vec();
-            let Err(error) = world.step() else {
-                let now = energy(&mut world, id);
-                assert!(now < 1e3 * start, "{now} J from {start} J");
-                continue;
-            };
-            assert!(matches!(error, StepError::GainedEnergy { .. }), "{error}");
-            assert!(error.to_string().contains("or backward Euler"), "{error}");
-            assert_eq!(world.body(id).positions(), &before[..]);
-            said += 1;
-            break;
+fn a_step_that_gains_energy_however_it_is_made_is_undone() {
+    let full = Newton::Full { relative: 1e-8, at_most: 100 };
+    for (newton, bound) in [(Newton::Linearised, 1e3), (full, 2.0)] {
+        let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, newton, ..Implicit::default() };
+        let mut said = 0;
+        for length in (0..20).map(|number| 1000.0 * 1.05_f64.powi(number)) {
+            let (mut world, id) = cube(tetrahedra(), TotalLagrangian::new(neo_hookean()), settings);
+            world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, length * x.z));
+            let start = energy(&mut world, id);
+            for _ in 0..60 {
+                let before = world.body(id).positions().to_vec();
+                let Err(error) = world.step() else {
+                    let now = energy(&mut world, id);
+                    assert!(now < bound * start, "{now} J from {start} J");
+                    continue;
+                };
+                assert_eq!(world.body(id).positions(), &before[..]);
+                let gained = matches!(error, StepError::GainedEnergy { .. });
+                assert!(gained || newton == full, "{error}");
+                assert!(!gained || error.to_string().contains("or backward Euler"), "{error}");
+                said += usize::from(gained);
+                break;
+            }
         }
+        assert!(said > 0, "{newton:?}");
     }
-    assert!(said > 0);
 }
 
 /// Where nodes end farther than a million sizes away in the shortest parts too, as in the free fall of a step of 0.02 s under 1e20 m/s², the step

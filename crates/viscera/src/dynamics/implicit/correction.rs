@@ -107,7 +107,7 @@ impl<T: Scalar> Step<'_, T> {
             masses,
             executor: &executor,
         };
-        let stop = self.settings.linear;
+        let stop = self.stop;
         let (diagonal, solver) = (&mut memory.preconditioner, &mut memory.conjugate_gradient);
         let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
             Some(multigrid) => {

@@ -58,6 +58,7 @@ pub(crate) fn advance<T: Scalar>(
         stages,
         went_astray: false,
         stands_in: false,
+        may_climb: !is_last,
         imbalance: 0.0,
     };
     group.agree_on_past();
@@ -91,6 +92,8 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) went_astray: bool,
     /// Whether a linearised step stands in for full equations that were not solved.
     pub(super) stands_in: bool,
+    /// Whether the first iterations of Newton's method may climb.
+    pub(super) may_climb: bool,
     /// Share of the forces that a linearised step left without balance.
     pub(super) imbalance: f64,
 }
@@ -115,7 +118,18 @@ impl<T: Scalar> Group<'_, T> {
         };
         let Interval { from, dt, drive } = self.interval;
         let (body, memory) = (&mut self.bodies[number], &mut self.memories[number]);
-        Step { body, memory, settings: self.settings, numbers: self.numbers, from, dt, drive, stages: self.stages }
+        let stop = self.settings.stop(self.is_last);
+        Step {
+            body,
+            memory,
+            settings: self.settings,
+            numbers: self.numbers,
+            from,
+            dt,
+            drive,
+            stop,
+            stages: self.stages,
+        }
     }
 
     /// The tied bodies, with all bodies of the world and their memories; none for one alone.
@@ -159,20 +173,34 @@ impl<T: Scalar> Group<'_, T> {
         self.each(|step| step.coast());
     }
 
-    /// Solves the step as it was asked for. Forces without a potential jump where cells turn inside out, and full equations may have no solution
-    /// there however short the step: the last attempt is linearised then, and not converged.
+    /// Solves the step as it was asked for, in the last attempt in two ways. Forces without a potential jump where cells turn inside out, and full
+    /// equations may have no solution there however short the step: it is linearised then, and not converged. With one, no iteration climbs, and
+    /// only where that finds no good solution, as along narrow valleys that bend, some may.
     fn solve(&mut self) -> ImplicitReport {
         let newton = self.settings.newton;
         let Newton::Full { relative, .. } = newton else { return self.solve_linearised() };
         let report = self.solve_in_full(relative, newton.at_most(self.is_last));
-        if report.converged || !self.is_last || !self.any(|step| !step.has_potential()) {
+        if !self.is_last {
             return report;
         }
+        if self.any(|step| !step.has_potential()) {
+            return if report.converged { report } else { report.then(self.stand_in()) };
+        }
+        if self.potential().is_none() || (report.converged && !self.has_gained()) {
+            return report;
+        }
+        self.may_climb = true;
+        self.each(|step| step.start_again());
+        report.then(self.solve_in_full(relative, newton.at_most(true)))
+    }
+
+    /// A linearised step in place of full equations that were not solved.
+    fn stand_in(&mut self) -> ImplicitReport {
         self.stands_in = true;
         self.each(|step| step.start_again());
         let linearised = self.solve_linearised();
         let residual = if self.went_astray { linearised.residual } else { self.imbalance };
-        ImplicitReport { converged: false, residual, ..report.then(linearised) }
+        ImplicitReport { converged: false, residual, ..linearised }
     }
 
     /// Why what was solved is not to be taken, if so.

@@ -78,7 +78,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),
-            conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
+            conjugate_gradient: ConjugateGradient::new(nodes, settings.stop(true).at_most()),
             reactions: zeros(),
             is_linear: false,
             dragged: Vec::with_capacity(nodes),

@@ -101,6 +101,16 @@ impl Implicit {
         }
     }
 
+    /// When linear solves end, in the last attempt at a step or one before: those of full equations with a goal have more iterations to it.
+    pub(super) fn stop(&self, is_last: bool) -> Stop {
+        match self.linear {
+            Stop::Tolerance { relative, at_most } if is_last && self.newton != Newton::Linearised => {
+                Stop::Tolerance { relative, at_most: PATIENCE * at_most }
+            }
+            linear => linear,
+        }
+    }
+
     /// The first setting that makes no sense: its name, its value, what would do.
     pub(crate) fn first_out_of_range(&self) -> Option<(&'static str, f64, &'static str)> {
         let share = |value: f64| value > 0.0 && value < 1.0;
