@@ -267,7 +267,7 @@ pub enum StepError {
         residual: f64,
     },
     /// Whatever was found gains energy from nobody, more than its scheme does, in 64 parts of the step too: solutions of the full equations,
-    /// the linearised parts that stand in for those that have none, or linearised parts with ten times as much energy as before.
+    /// the linearised parts that stand in for those that have none, or linearised parts that gain nine times the energy before the step.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \
          which is stretched {stretch:.3} times before the step: all ways that were found gain energy; the step is undone. Take a \

@@ -18,7 +18,7 @@ impl<T: Scalar> World<T> {
     /// too long a step from where the tissue is: half of it has a solution nearer by, and the step is made again in twice as many parts.
     /// So are steps that leave the numbers that there are, and those that gain energy as their scheme does not. The shortest parts are taken
     /// linearised where forces have no potential and full equations still no solution, and with a gain that linearised ones still have, short of
-    /// ten times the energy before.
+    /// ten times the energy before it where there is a potential.
     pub(super) fn move_implicitly(
         &mut self,
         span: &Span,
@@ -63,7 +63,7 @@ impl<T: Scalar> World<T> {
                 (span.at(share(part)), if part + 1 == parts { span.to } else { span.at(share(part + 1)) });
             let drive = Drive { end, frames: &self.motion.frames, rods: &self.motion.rods, gravity };
             let dt = self.config.step / f64::from(parts);
-            let interval = Interval { from, dt, drive: &drive };
+            let interval = Interval { from, dt, is_first: part == 0, drive: &drive };
             // A scheme over two steps knows steps of one length.
             self.bodies.iter_mut().for_each(|body| body.state.past.is_known &= parts == 1);
             for number in 0..self.bodies.len() {

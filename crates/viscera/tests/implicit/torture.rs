@@ -277,36 +277,33 @@ fn full_steps_that_gain_much_without_a_potential_are_made_in_parts() {
     }
 }
 
-/// Newmark's method has no bound. Steps that gain in the shortest parts too, in full a tenth, linearised ten times the energy of before, are
-/// undone and say so: plain neo-Hookean tissue, let go at a thousand times its length or more, linearised, rose to 1e26 times its energy,
-/// until nodes were thrown a million sizes away.
+/// Newmark's method has no bound. Linearised steps that gain nine times the energy of before in the shortest parts too, all together, are undone and
+/// say so: plain neo-Hookean tissue, let go at a thousand times its length or more, rose to 1e26 times its energy, until nodes were thrown
+/// a million sizes away.
 #[test]
-fn a_step_that_gains_energy_however_it_is_made_is_undone() {
-    let full = Newton::Full { relative: 1e-8, at_most: 100 };
-    for (newton, bound) in [(Newton::Linearised, 1e3), (full, 2.0)] {
-        let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, newton, ..Implicit::default() };
-        let mut said = 0;
-        for length in (0..20).map(|number| 1000.0 * 1.05_f64.powi(number)) {
-            let (mut world, id) = cube(tetrahedra(), TotalLagrangian::new(neo_hookean()), settings);
-            world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, length * x.z));
-            let start = energy(&mut world, id);
-            for _ in 0..60 {
-                let before = world.body(id).positions().to_vec();
-                let Err(error) = world.step() else {
-                    let now = energy(&mut world, id);
-                    assert!(now < bound * start, "{now} J from {start} J");
-                    continue;
-                };
-                assert_eq!(world.body(id).positions(), &before[..]);
-                let gained = matches!(error, StepError::GainedEnergy { .. });
-                assert!(gained || newton == full, "{error}");
-                assert!(!gained || error.to_string().contains("or backward Euler"), "{error}");
-                said += usize::from(gained);
-                break;
-            }
+fn a_linearised_step_that_gains_many_times_its_energy_is_undone() {
+    let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, ..Implicit::default() };
+    let mut said = 0;
+    for length in (0..20).map(|number| 1000.0 * 1.05_f64.powi(number)) {
+        let mesh = TetMesh::box_grid([2; 3], [0.1; 3]);
+        let body = Body::new(mesh, 1000.0).model(TotalLagrangian::new(neo_hookean())).damping(50.0);
+        let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, settings, body);
+        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, length * x.z));
+        for _ in 0..60 {
+            let (start, places) = (energy(&mut world, id), world.body(id).positions().to_vec());
+            let Err(error) = world.step() else {
+                let now = energy(&mut world, id);
+                assert!(now <= 10.0 * start, "{now} J after {start} J");
+                continue;
+            };
+            assert!(matches!(error, StepError::GainedEnergy { .. }), "{error}");
+            assert!(error.to_string().contains("or backward Euler"), "{error}");
+            assert_eq!(world.body(id).positions(), &places[..]);
+            said += 1;
+            break;
         }
-        assert!(said > 0, "{newton:?}");
     }
+    assert!(said > 0);
 }
 
 /// Where nodes end farther than a million sizes away in the shortest parts too, as in the free fall of a step of 0.02 s under 1e20 m/s², the step

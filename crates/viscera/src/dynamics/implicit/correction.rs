@@ -89,6 +89,7 @@ impl<T: Scalar> Step<'_, T> {
 
     /// Solves for the correction of δ, which holds the guess.
     pub(super) fn solve(&mut self) -> Solve {
+        let stop = self.settings.stop(self.is_last && self.has_potential());
         let executor = self.body.scratch.executor.clone();
         let memory = &mut *self.memory;
         let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));
@@ -107,7 +108,6 @@ impl<T: Scalar> Step<'_, T> {
             masses,
             executor: &executor,
         };
-        let stop = self.stop;
         let (diagonal, solver) = (&mut memory.preconditioner, &mut memory.conjugate_gradient);
         let report = self.stages.run(Stage::LinearSolve, || match &mut memory.multigrid {
             Some(multigrid) => {

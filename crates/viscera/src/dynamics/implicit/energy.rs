@@ -28,11 +28,26 @@ const GAIN: f64 = 1e-6;
 const GAIN_UNBOUNDED: f64 = 0.1;
 /// A linearised step that is looked at gains no more than this share.
 const GAIN_LINEARISED: f64 = 0.01;
-/// And in the last attempt no more than this: what makes nine tenths of the energies that are about anew has ten times as much as before.
-const GAIN_AT_LAST: f64 = 0.9;
+/// In the last attempt, where the forces have a potential, all its parts together gain no more than so many times what there was before them and what
+/// was done to them since. By what each one gains alone, 64 of them came to 1e26 times it.
+const GAIN_AT_LAST: f64 = 9.0;
 /// A linearised step that leaves more than this share of the forces without balance is looked at, with schemes without a bound: half the work of
 /// what is left is what Newmark's method gains. Corotational tissue, stretched a thousand times and let go, came to 5e7 times its energy.
 const IMBALANCE: f64 = 0.1;
+
+/// Energies of a step [J].
+struct Gain {
+    /// What kinetic and elastic energy grew by beyond the work of the loads.
+    gain: f64,
+    /// Both before it.
+    before: f64,
+    /// The elastic one after it.
+    after: f64,
+    /// Size of the work of the loads.
+    work: f64,
+    /// What rounding makes of the gain.
+    rounding: f64,
+}
 
 impl<T: Scalar> Group<'_, T> {
     /// Whether the step that is solved gained energy, and not from anybody: tools, ties and driven nodes may give some. Linearised steps are
@@ -45,20 +60,35 @@ impl<T: Scalar> Group<'_, T> {
         let is_bounded = self.settings.scheme == Scheme::BackwardEuler;
         let is_suspect = self.went_astray || self.stands_in || (!is_bounded && self.imbalance > IMBALANCE);
         let is_linearised = self.settings.newton == Newton::Linearised || self.stands_in;
-        let may_gain = self.is_last && !self.stands_in;
-        let step = self.member(0);
-        if is_linearised {
-            return is_suspect && step.has_gained(if may_gain { GAIN_AT_LAST } else { GAIN_LINEARISED });
+        let (is_last, is_first) = (self.is_last && !self.stands_in, self.interval.is_first);
+        let mut step = self.member(0);
+        match is_linearised {
+            true if is_last => step.has_potential() && step.has_gained_since(is_first),
+            true => is_suspect && step.has_gained(GAIN_LINEARISED),
+            false => step.has_gained(if is_bounded && step.has_potential() { GAIN } else { GAIN_UNBOUNDED }),
         }
-        step.has_gained(if is_bounded && step.has_potential() { GAIN } else { GAIN_UNBOUNDED })
     }
 }
 
 impl<T: Scalar> Step<'_, T> {
     fn has_gained(&self, share: f64) -> bool {
+        self.gain().is_some_and(|own| own.gain > share * (own.before + own.after + own.work) + own.rounding)
+    }
+
+    /// Whether it did with the parts of the step before it, of which there are none if it `is_first`.
+    fn has_gained_since(&mut self, is_first: bool) -> bool {
+        let Some(own) = self.gain() else { return false };
+        let (gain, about) = if is_first { (0.0, own.before) } else { self.memory.gain };
+        let (gain, about) = (gain + own.gain, about + own.work);
+        self.memory.gain = (gain, about);
+        gain > GAIN_AT_LAST * about + own.rounding
+    }
+
+    /// What it gained from nobody, unless there may be somebody.
+    fn gain(&self) -> Option<Gain> {
         let (body, memory, state) = (&*self.body, &*self.memory, &self.body.state);
         if body.followers.is_some() || !body.contacts.is_empty() || self.is_led() {
-            return false;
+            return None;
         }
         let (mut kinetic, mut work) = ([0.0; 2], 0.0);
         let (mut forces, mut places) = (0.0, 0.0);
@@ -77,12 +107,16 @@ impl<T: Scalar> Step<'_, T> {
         }
         let elastic = |x: &[Vec3<T>]| state.models.iter().map(|model| model.energy(x)).sum::<f64>();
         let elastic = [elastic(&memory.start), elastic(&state.positions)];
-        let gain = kinetic[1] + elastic[1] - kinetic[0] - elastic[0] - work;
         let about = kinetic[0] + elastic[0].abs() + elastic[1].abs() + work.abs();
         // What rounding of the places makes of the elastic energies, and of what adds up to nothing near rest.
         let rounding = T::EPSILON.to_f64() * (8.0 * (forces * places).sqrt() + 64.0 * about);
-        let rounding = rounding + memory.rounding * places.sqrt();
-        gain > share * about + rounding
+        Some(Gain {
+            gain: kinetic[1] + elastic[1] - kinetic[0] - elastic[0] - work,
+            before: kinetic[0] + elastic[0].abs(),
+            after: elastic[1].abs(),
+            work: work.abs(),
+            rounding: rounding + memory.rounding * places.sqrt(),
+        })
     }
 
     pub(super) fn has_potential(&self) -> bool {

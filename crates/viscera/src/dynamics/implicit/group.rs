@@ -23,6 +23,8 @@ pub(crate) struct Interval<'a, T> {
     pub(crate) from: f64,
     /// Its length [s].
     pub(crate) dt: f64,
+    /// Whether it is the first part of a step of the world.
+    pub(crate) is_first: bool,
     pub(crate) drive: &'a Drive<'a, T>,
 }
 
@@ -116,9 +118,8 @@ impl<T: Scalar> Group<'_, T> {
             Together::Alone(number) => *number,
             Together::Tied(tied) => tied.bodies[member],
         };
-        let Interval { from, dt, drive } = self.interval;
+        let Interval { from, dt, drive, .. } = self.interval;
         let (body, memory) = (&mut self.bodies[number], &mut self.memories[number]);
-        let stop = self.settings.stop(self.is_last);
         Step {
             body,
             memory,
@@ -127,7 +128,7 @@ impl<T: Scalar> Group<'_, T> {
             from,
             dt,
             drive,
-            stop,
+            is_last: self.is_last,
             stages: self.stages,
         }
     }

@@ -46,6 +46,8 @@ pub struct ImplicitMemory<T> {
     pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
     pub(super) history: Vec<f64>,
+    /// What parts of a step gained from nobody in its last attempt, and the energy before them with the work of the loads since [J].
+    pub(super) gain: (f64, f64),
 }
 
 impl<T: Scalar> ImplicitMemory<T> {
@@ -83,6 +85,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             is_linear: false,
             dragged: Vec::with_capacity(nodes),
             history: Vec::with_capacity(settings.newton.at_most(true) as usize + 1),
+            gain: (0.0, 0.0),
         }
     }
 

@@ -101,10 +101,10 @@ impl Implicit {
         }
     }
 
-    /// When linear solves end, in the last attempt at a step or one before: those of full equations with a goal have more iterations to it.
-    pub(super) fn stop(&self, is_last: bool) -> Stop {
+    /// When linear solves end: `patient` ones of full equations with a goal have more iterations to it.
+    pub(super) fn stop(&self, patient: bool) -> Stop {
         match self.linear {
-            Stop::Tolerance { relative, at_most } if is_last && self.newton != Newton::Linearised => {
+            Stop::Tolerance { relative, at_most } if patient && self.newton != Newton::Linearised => {
                 Stop::Tolerance { relative, at_most: PATIENCE * at_most }
             }
             linear => linear,

@@ -5,7 +5,7 @@ use crate::body::{NodeMotion, SimulatedBody};
 use crate::dynamics::Drive;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
-use crate::solver::{Filter, Stop};
+use crate::solver::Filter;
 use crate::stage::Stages;
 
 /// One implicit step of one body, whatever the scheme: its part in the equations of those that are solved together.
@@ -17,8 +17,8 @@ pub(super) struct Step<'a, T: Scalar> {
     pub(super) from: f64,
     pub(super) dt: f64,
     pub(super) drive: &'a Drive<'a, T>,
-    /// When its linear solves end.
-    pub(super) stop: Stop,
+    /// Whether there will be no other attempt at it.
+    pub(super) is_last: bool,
     pub(super) stages: Stages<'a>,
 }
 

@@ -57,7 +57,7 @@ impl<T: Scalar> ImplicitTies<T> {
             by_matrix: tied.placed(&starts),
             starts,
             preconditioner: BlockJacobi::new(nodes),
-            conjugate_gradient: ConjugateGradient::new(nodes, settings.stop(true).at_most()),
+            conjugate_gradient: ConjugateGradient::new(nodes, settings.linear.at_most()),
             rhs: zeros(),
             correction: zeros(),
             prescribed: zeros(),
@@ -177,8 +177,7 @@ impl<T: Scalar> Group<'_, T> {
 
     /// Solves for the corrections of δ of all, which hold the guess, in one system.
     pub(super) fn solve_tied(&mut self) -> Solve {
-        let (stop, stages, is_full) =
-            (self.settings.stop(self.is_last), self.stages, self.settings.newton != Newton::Linearised);
+        let (stop, stages, is_full) = (self.settings.linear, self.stages, self.settings.newton != Newton::Linearised);
         let nothing = Solve { iterations: 0, residual: 0.0, converged: true, negative_curvature: false, rounding: 0.0 };
         let Some((tied, bodies, memories)) = self.tied() else { return nothing };
         let TiedBodies { bodies: numbers, nodes, by_mass, implicit: Some(ties), .. } = tied else { return nothing };
