@@ -278,8 +278,8 @@ fn full_steps_that_gain_much_without_a_potential_are_made_in_parts() {
 }
 
 /// Newmark's method has no bound. Linearised steps that gain nine times the energy of before in the shortest parts too, all together, are undone and
-/// say so: plain neo-Hookean tissue, let go at a thousand times its length or more, rose to 1e26 times its energy, until nodes were thrown
-/// a million sizes away.
+/// say so: plain neo-Hookean tissue, let go at a thousand times its length or more, went on until nodes were thrown a million sizes away, one of
+/// twenty held cubes after a step to 41 times its energy.
 #[test]
 fn a_linearised_step_that_gains_many_times_its_energy_is_undone() {
     let settings = Implicit { scheme: Scheme::AVERAGE_ACCELERATION, ..Implicit::default() };

@@ -29,7 +29,7 @@ const GAIN_UNBOUNDED: f64 = 0.1;
 /// A linearised step that is looked at gains no more than this share.
 const GAIN_LINEARISED: f64 = 0.01;
 /// In the last attempt, where the forces have a potential, all its parts together gain no more than so many times what there was before them and what
-/// was done to them since. By what each one gains alone, 64 of them came to 1e26 times it.
+/// was done to them since: what one of 64 alone may gain, they may to the 64th power.
 const GAIN_AT_LAST: f64 = 9.0;
 /// A linearised step that leaves more than this share of the forces without balance is looked at, with schemes without a bound: half the work of
 /// what is left is what Newmark's method gains. Corotational tissue, stretched a thousand times and let go, came to 5e7 times its energy.
