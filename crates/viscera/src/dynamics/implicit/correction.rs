@@ -84,6 +84,7 @@ impl<T: Scalar> Step<'_, T> {
             memory.preconditioner.invert(&matrix.masses, &memory.filters, &executor);
             rounding
         });
+        memory.least_rounding = memory.least_rounding.min(memory.rounding);
         touches
     }
 

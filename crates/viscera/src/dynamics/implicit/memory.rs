@@ -34,6 +34,8 @@ pub struct ImplicitMemory<T> {
     pub(super) matrix: StepMatrix<T>,
     /// Forces that rounding of the positions makes [N].
     pub(super) rounding: f64,
+    /// The least of them over the linear systems of the step [N].
+    pub(super) least_rounding: f64,
     pub(super) filters: Vec<Filter<T>>,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
@@ -77,6 +79,7 @@ impl<T: Scalar> ImplicitMemory<T> {
                 assembled: (settings.matrix == MatrixForm::Assembled).then(|| BlockMatrix::new(mesh, reach)),
             },
             rounding: 0.0,
+            least_rounding: 0.0,
             filters: vec![Filter::Free; nodes],
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),

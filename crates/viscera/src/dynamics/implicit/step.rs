@@ -28,6 +28,7 @@ impl<T: Scalar> Step<'_, T> {
         self.memory.start.copy_from_slice(&self.body.state.positions);
         self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
+        self.memory.least_rounding = f64::INFINITY;
         self.memory.matrix.is_exact = false;
         self.memory.dragged.clear();
         self.body.contacts.clear();
