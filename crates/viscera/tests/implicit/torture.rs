@@ -306,7 +306,7 @@ fn a_linearised_step_that_gains_many_times_its_energy_is_undone() {
     assert!(said > 0);
 }
 
-/// What rounding makes of energies is that of where the step begins and ends, not of the stiffest place on its way: a hybrid body of neo-Hookean
+/// What rounding makes of energies is that of the softest place on the way of a step, not of the stiffest: a hybrid body of neo-Hookean
 /// tissue, let go at a thousand times its length, came to 1e26 times its energy in the first step.
 #[test]
 fn rounding_excuses_no_gain() {

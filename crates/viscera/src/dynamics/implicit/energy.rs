@@ -41,10 +41,10 @@ struct Gain {
     gain: f64,
     /// Both before it.
     before: f64,
-    /// The elastic one after it.
-    after: f64,
     /// Size of the work of the loads.
     work: f64,
+    /// All that is about: both of these and the elastic energy after the step.
+    about: f64,
     /// What rounding makes of the gain.
     rounding: f64,
 }
@@ -72,7 +72,7 @@ impl<T: Scalar> Group<'_, T> {
 
 impl<T: Scalar> Step<'_, T> {
     fn has_gained(&self, share: f64) -> bool {
-        self.gain().is_some_and(|own| own.gain > share * (own.before + own.after + own.work) + own.rounding)
+        self.gain().is_some_and(|own| own.gain > share * own.about + own.rounding)
     }
 
     /// Whether it did with the parts of the step before it, of which there are none if it `is_first`.
@@ -107,13 +107,14 @@ impl<T: Scalar> Step<'_, T> {
         }
         let elastic = |x: &[Vec3<T>]| state.models.iter().map(|model| model.energy(x)).sum::<f64>();
         let elastic = [elastic(&memory.start), elastic(&state.positions)];
-        let about = kinetic[0] + elastic[0].abs() + elastic[1].abs() + work.abs();
+        let before = kinetic[0] + elastic[0].abs();
+        let about = before + elastic[1].abs() + work.abs();
         // What rounding of the places makes of the elastic energies, and of what adds up to nothing near rest.
         let rounding = T::EPSILON.to_f64() * (8.0 * (forces * places).sqrt() + 64.0 * about);
         Some(Gain {
             gain: kinetic[1] + elastic[1] - kinetic[0] - elastic[0] - work,
-            before: kinetic[0] + elastic[0].abs(),
-            after: elastic[1].abs(),
+            before,
+            about,
             work: work.abs(),
             // On a way through places of any stiffness the last of these would excuse what it led to: neo-Hookean tissue, let go at a thousand
             // times its length, came to 1e26 times its energy in a step.
