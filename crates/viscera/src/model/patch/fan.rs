@@ -4,7 +4,7 @@
 //! it closes: six tetrahedra of a cube around its diagonal, 8 in place of 24.
 
 /// The longest fan: longer ones save little and leave more lanes idle.
-const LONGEST: usize = 8;
+pub(super) const LONGEST: usize = 8;
 
 /// The tetrahedra (axis 0, axis 1, ring i, ring i + 1), all of them oriented like the cells that they are.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,19 +3,31 @@
 use fearless_simd::Simd;
 
 use super::element::{Diagonal, Element, Measure, Record};
+use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
 
-/// Whoever is led along the fans.
+/// Whoever is led along the fans, a batch at a time.
 pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
-    /// A batch of fans begins.
+    /// The tetrahedra of a slot, in this `place` of their fans.
+    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]);
+    /// All tetrahedra of the batch have been visited.
     #[inline(always)]
-    fn begin(&mut self) {}
-    /// The tetrahedra of a slot; corner 2 are the nodes `from` of the ring, none at the node where the ring will close.
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: Option<&[u32]>);
-    /// The batch has ended: nodes of its axis, and those where the ring ends or has closed.
-    #[inline(always)]
-    fn end(&mut self, _origin: &[u32], _end: &[u32], _last: &[u32]) {}
+    fn end(&mut self, _nodes: &BatchNodes<'_>) {}
+}
+
+/// Nodes of a batch of fans, for all lanes each.
+pub(super) struct BatchNodes<'a> {
+    /// Where the axis begins.
+    pub(super) origin: &'a [u32],
+    /// Where it ends.
+    pub(super) end: &'a [u32],
+    /// Corner 2 of the tetrahedra, place by place.
+    pub(super) ring: &'a [u32],
+    /// Corner 3 of the last.
+    pub(super) last: &'a [u32],
+    /// Whether that is the first of the ring.
+    pub(super) is_closed: bool,
 }
 
 /// How many slots a loop looks ahead.
@@ -68,82 +80,71 @@ impl<T: Scalar, S: Simd, E: Element<T, 1>, M: Measure<T>> Forces<T, S, 1> for &m
 
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
 pub(super) struct Scatter<'a, T: Scalar, S: Simd, F> {
-    pub(super) simd: S,
     pub(super) element: F,
     pub(super) sums: &'a mut PatchRows<T>,
-    /// Force on the end of the axis.
-    pub(super) end: Vec3<T::Lanes<S>>,
-    /// Sum of the forces on the ring: what is left to make them all zero acts on the origin.
-    pub(super) ring: Vec3<T::Lanes<S>>,
-    /// What the last tetrahedron exerts on the node of the ring that it shares with the next.
-    pub(super) carried: Vec3<T::Lanes<S>>,
-    /// The force on the node where the ring will close.
-    pub(super) kept: Vec3<T::Lanes<S>>,
+    /// The forces of a batch.
+    pub(super) forces: [Mat3<T::Lanes<S>>; LONGEST],
 }
 
 impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, F> {
     #[inline(always)]
-    fn begin(&mut self) {
-        let zero = Vec3::splat(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.end, self.ring, self.carried, self.kept) = (zero, zero, zero, zero);
+    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
+        self.forces[place] = self.element.forces(simd, slot, edges);
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS], from: Option<&[u32]>) {
-        let [end, ring, next] = self.element.forces(simd, slot, edges).columns;
-        let ring = self.carried + ring;
-        self.end += end;
-        self.ring += ring;
-        self.carried = next;
-        match from {
-            Some(from) => add(ring, from, self.sums),
-            None => self.kept = ring,
+    fn end(&mut self, nodes: &BatchNodes<'_>) {
+        // `ring` sums up the forces on the ring: what is left to make them all zero acts on the origin. `carried` is what the last tetrahedron
+        // exerts on the node that it shares with the next, and `kept` waits where the ring will close.
+        let [mut end, kept, mut carried] = self.forces[0].columns;
+        let mut ring = kept;
+        if !nodes.is_closed {
+            add(kept, &nodes.ring[..T::LANES], self.sums);
         }
-    }
-
-    #[inline(always)]
-    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add(self.kept + self.carried, last, self.sums);
-        add(self.end, end, self.sums);
-        add(-(self.ring + self.carried + self.end), origin, self.sums);
+        for (forces, from) in self.forces.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
+            let [on_end, on_ring, next] = forces.columns;
+            let on_ring = carried + on_ring;
+            end += on_end;
+            ring += on_ring;
+            carried = next;
+            add(on_ring, from, self.sums);
+        }
+        add(if nodes.is_closed { kept + carried } else { carried }, nodes.last, self.sums);
+        add(end, nodes.end, self.sums);
+        add(-(ring + carried + end), nodes.origin, self.sums);
     }
 }
 
 /// Adds up blocks as [`Scatter`] does forces, but that those of the origin do not follow from the others.
 pub(super) struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
-    pub(super) simd: S,
     pub(super) element: &'a E,
     pub(super) sums: &'a mut [PatchRows<T>; 2],
-    pub(super) origin: Sym3<T::Lanes<S>>,
-    pub(super) end: Sym3<T::Lanes<S>>,
-    pub(super) carried: Sym3<T::Lanes<S>>,
-    pub(super) kept: Sym3<T::Lanes<S>>,
+    /// The blocks of a batch.
+    pub(super) blocks: [[Sym3<T::Lanes<S>>; 4]; LONGEST],
 }
 
 impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, S, E> {
     #[inline(always)]
-    fn begin(&mut self) {
-        let zero = Sym3::diagonal(T::Lanes::<S>::splat(self.simd, T::ZERO));
-        (self.origin, self.end, self.carried, self.kept) = (zero, zero, zero, zero);
+    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+        self.blocks[place] = self.element.blocks(simd, slot, &edges[0]);
     }
 
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], from: Option<&[u32]>) {
-        let [origin, end, ring, next] = self.element.blocks(simd, slot, &edges[0]);
-        self.origin = self.origin + origin;
-        self.end = self.end + end;
-        match from {
-            Some(from) => add_block(self.carried + ring, from, self.sums),
-            None => self.kept = ring,
+    fn end(&mut self, nodes: &BatchNodes<'_>) {
+        let [mut origin, mut end, kept, mut carried] = self.blocks[0];
+        if !nodes.is_closed {
+            add_block(kept, &nodes.ring[..T::LANES], self.sums);
         }
-        self.carried = next;
-    }
-
-    #[inline(always)]
-    fn end(&mut self, origin: &[u32], end: &[u32], last: &[u32]) {
-        add_block(self.kept + self.carried, last, self.sums);
-        add_block(self.end, end, self.sums);
-        add_block(self.origin, origin, self.sums);
+        for (blocks, from) in self.blocks.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
+            let [on_origin, on_end, on_ring, next] = *blocks;
+            origin = origin + on_origin;
+            end = end + on_end;
+            add_block(carried + on_ring, from, self.sums);
+            carried = next;
+        }
+        add_block(if nodes.is_closed { kept + carried } else { carried }, nodes.last, self.sums);
+        add_block(end, nodes.end, self.sums);
+        add_block(origin, nodes.origin, self.sums);
     }
 }
 
@@ -161,7 +162,7 @@ pub(super) struct Largest<'a, M, V> {
 
 impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1], _from: Option<&[u32]>) {
+    fn tetrahedron(&mut self, simd: S, slot: usize, _place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
         self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
     }
 }
