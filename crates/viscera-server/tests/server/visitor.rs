@@ -4,12 +4,12 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use futures_util::{SinkExt, StreamExt};
-use tokio::net::TcpStream;
+use tokio::net::{TcpSocket, TcpStream};
 use tokio::runtime::Runtime;
 use tokio::time::timeout;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::protocol::CloseFrame;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, client_async};
 use viscera::executor::Executor;
 use viscera_server::{Server, Settings};
 use viscera_session::Session;
@@ -60,15 +60,31 @@ pub(crate) struct Visitor {
 
 impl Visitor {
     pub(crate) async fn connect(address: SocketAddr) -> Self {
-        Self { socket: connect_async(format!("ws://{address}/ws")).await.unwrap().0 }
+        Self::over(TcpStream::connect(address).await.unwrap()).await
+    }
+
+    /// Connects with a socket that holds no more than some kB of what is not read, however much those of the machine may hold.
+    pub(crate) async fn connect_holding_little(address: SocketAddr) -> Self {
+        let socket = TcpSocket::new_v4().unwrap();
+        socket.set_recv_buffer_size(64 << 10).unwrap();
+        Self::over(socket.connect(address).await.unwrap()).await
+    }
+
+    async fn over(stream: TcpStream) -> Self {
+        let address = format!("ws://{}/ws", stream.peer_addr().unwrap());
+        Self { socket: client_async(address, MaybeTlsStream::Plain(stream)).await.unwrap().0 }
     }
 
     /// Connects and says hello.
     pub(crate) async fn enter(address: SocketAddr) -> (Self, Welcome) {
-        let mut visitor = Self::connect(address).await;
-        visitor.say(Command::Hello { version: VERSION, client: None }).await;
-        match visitor.hear().await {
-            Some(Answer::Welcome(welcome)) => (visitor, welcome),
+        Self::connect(address).await.introduced().await
+    }
+
+    /// Says hello.
+    pub(crate) async fn introduced(mut self) -> (Self, Welcome) {
+        self.say(Command::Hello { version: VERSION, client: None }).await;
+        match self.hear().await {
+            Some(Answer::Welcome(welcome)) => (self, welcome),
             other => panic!("no welcome: {other:?}"),
         }
     }
