@@ -293,7 +293,7 @@ impl<T: Scalar> SimulatedBody<T> {
     /// Asks for the memory of `tools` tools; those that `touch` want to know the surface.
     pub(crate) fn reserve_contacts(&mut self, tools: usize, touch: bool) {
         let faces = if touch { self.boundary.faces.len() } else { 0 };
-        let triangles = self.boundary.surface(&self.state.removed).count().min(faces);
+        let triangles = self.boundary.faces.iter().filter(|face| face.cells.1.is_none()).count().min(faces);
         self.contacts.reserve(tools, triangles, faces);
         if let Some(answer) = &mut self.answer {
             answer.pushes.reserve(triangles, answer.responses.handles().len());

@@ -25,6 +25,11 @@ impl Skin {
         &self.triangles
     }
 
+    /// The triangles, and the number of the face of each, which tells them apart whatever their order.
+    pub(crate) fn numbered(&self) -> (&[[u32; 3]], &[u32]) {
+        (&self.triangles, &self.faces)
+    }
+
     /// Asks for the memory of a skin of `boundary`, a mesh of so many cells, however it will be cut; nothing is allocated later.
     pub(super) fn reserve(&mut self, boundary: &Boundary, cells: usize) {
         let faces = boundary.faces.len();

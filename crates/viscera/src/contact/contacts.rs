@@ -63,8 +63,10 @@ pub struct ToolLoad {
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
     pub(super) list: Vec<Contact>,
-    /// Triangles that a tool may reach in the step.
+    /// Triangles that a tool may reach in the step, in the order of their faces.
     candidates: Vec<u32>,
+    /// The most contacts that are known at a time.
+    most: usize,
     /// How far a node may go before the candidates mean nothing [m].
     reach: f64,
     /// What the tools did in the step, one for each tool.
@@ -72,10 +74,12 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// Asks for memory: for as many tools, for a surface of so many triangles, and of so many `at_most` when it is cut. No more
-    /// contacts than the surface has triangles are known at a time.
+    /// Asks for memory: for as many tools, for a surface of so many `triangles` before any cut, and of so many `at_most` when it is cut. No more
+    /// contacts than it had then are known at a time: were it those that it has, or that there happens to be room for, a world that goes on from a
+    /// snapshot could know others.
     pub(crate) fn reserve(&mut self, tools: usize, triangles: usize, at_most: usize) {
         self.loads.resize(tools.max(self.loads.len()), ToolLoad::default());
+        self.most = triangles;
         self.list.reserve(triangles.saturating_sub(self.list.len()));
         self.candidates.reserve(at_most.saturating_sub(self.candidates.len()));
     }
@@ -110,11 +114,12 @@ impl Contacts {
         self.reach
     }
 
-    /// Lists the triangles that the rods may meet while no node goes farther than `reach` [m]; gives whether there are any.
+    /// Lists the triangles that the rods may meet while no node goes farther than `reach` [m]; gives whether there are any. `faces` tell their order:
+    /// that in the skin depends on how it was cut, and decides which are left out where there are too many contacts.
     pub(crate) fn gather<T: Scalar>(
         &mut self,
         rods: &[MovingCapsule],
-        skin: &[[u32; 3]],
+        (skin, faces): (&[[u32; 3]], &[u32]),
         positions: &[Vec3<T>],
         reach: f64,
     ) -> bool {
@@ -130,6 +135,7 @@ impl Contacts {
                 self.candidates.push(triangle as u32);
             }
         }
+        self.candidates.sort_unstable_by_key(|&triangle| faces[triangle as usize]);
         !self.candidates.is_empty()
     }
 
@@ -153,7 +159,7 @@ impl Contacts {
                 let (from, to) = rod.bounds();
                 let margin = MARGIN * rod.start.radius;
                 if (0..3).any(|axis| low[axis] > to[axis] + margin || from[axis] > high[axis] + margin)
-                    || self.list.len() == self.list.capacity()
+                    || self.list.len() == self.most
                 {
                     continue;
                 }
@@ -249,7 +255,7 @@ impl Contacts {
     pub(crate) fn keep_tractions(&self, tractions: &mut Vec<Traction>, rods: &[MovingCapsule]) {
         tractions.clear();
         let touching = self.list.iter().filter(|contact| contact.push > 0.0);
-        tractions.extend(touching.take(tractions.capacity()).map(|contact| {
+        tractions.extend(touching.map(|contact| {
             let rod = rods[contact.rod as usize];
             Traction::new(contact.feature, (rod.tool, rod.part), contact.drag, contact.grip)
         }));

@@ -89,7 +89,7 @@ impl<T: Scalar> Answering<'_, T> {
     fn meet_tools(&mut self) {
         let drive = self.drive;
         self.body.contacts.forget();
-        if !self.body.contacts.gather(drive.rods, self.body.skin.triangles(), &self.body.state.positions, f64::INFINITY)
+        if !self.body.contacts.gather(drive.rods, self.body.skin.numbered(), &self.body.state.positions, f64::INFINITY)
         {
             return;
         }

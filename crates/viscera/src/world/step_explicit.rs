@@ -179,7 +179,7 @@ impl<T: Scalar> World<T> {
             let expected = (2.0 * body.fastest_node() + fall) * self.config.step + 2.0 * (way + radius);
             body.contacts.forget();
             touches |=
-                body.contacts.gather(&self.motion.rods, body.skin.triangles(), &body.state.positions, reach * expected);
+                body.contacts.gather(&self.motion.rods, body.skin.numbered(), &body.state.positions, reach * expected);
         }
         if touches { (2.0 * ratio).ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }

@@ -100,9 +100,9 @@ impl<T: Scalar> World<T> {
         let mut near = false;
         for body in moving(&mut self.bodies) {
             let coast = body.fastest_node() * self.config.step + way;
-            near |= body.contacts.gather(&self.motion.rods, body.skin.triangles(), &body.state.positions, coast);
+            near |= body.contacts.gather(&self.motion.rods, body.skin.numbered(), &body.state.positions, coast);
             // What is pushed pushes its neighbours: all of the surface may come to touch.
-            body.contacts.gather(&self.motion.rods, body.skin.triangles(), &body.state.positions, f64::INFINITY);
+            body.contacts.gather(&self.motion.rods, body.skin.numbered(), &body.state.positions, f64::INFINITY);
         }
         if near { ratio.ceil().clamp(1.0, MOST_PARTS) as u32 } else { 1 }
     }
