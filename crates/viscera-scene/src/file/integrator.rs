@@ -98,7 +98,7 @@ pub struct FullNewtonFile {
     #[serde(default = "one_in_a_hundred_million")]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub tolerance: f64,
-    /// The most iterations; a step that needs more is made in up to 64 parts and then ends the run, a share of the load of a quasi-static one
+    /// The most iterations; a step that needs more is made in parts, of which the shortest end the run, a share of the load of a quasi-static one
     /// is halved. By default 30.
     #[serde(default = "thirty")]
     #[schemars(extend("minimum" = 1, "maximum" = 1_000_000))]

@@ -247,7 +247,7 @@ pub enum StepError {
         /// (V − V0)/V0 that is left.
         error: f64,
     },
-    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 parts of it neither. Forces without a
+    /// The equations of an implicit step were not solved in the iterations that were allowed, in 64 and more parts of it neither. Forces without a
     /// potential, of which there may be no solution, take linearised parts then and no error.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) does not converge: after {iterations} iterations of Newton's \
@@ -266,7 +266,7 @@ pub enum StepError {
         /// What is left of the forces, over those that balance.
         residual: f64,
     },
-    /// Whatever was found gains energy from nobody, more than its scheme does, in 64 parts of the step too: solutions of the full equations,
+    /// Whatever was found gains energy from nobody, more than its scheme does, in 64 and more parts of the step too: solutions of the full equations,
     /// the linearised parts that stand in for those that have none, or linearised parts that gain nine times the energy before the step.
     #[error(
         "at {time:.4} s the step of body `{body}` ({law}) throws tissue across a hump of its energy, most of it near cell {cell}, \

@@ -106,7 +106,7 @@ fn a_solve_that_ends_early_is_reported() {
 fn a_full_step_that_does_not_converge_is_undone() {
     let newton = Newton::Full { relative: 1e-10, at_most: 1 };
     let settings = Implicit { newton, linear: Stop::Iterations(1), ..linearised() };
-    let (mut world, id) = implicit_world([0.0, -9.81, 0.0], 1e-1, settings, bar().fix(root()));
+    let (mut world, id) = implicit_world([0.0, -9.81, 0.0], 10.0, settings, bar().fix(root()));
     let before = world.body(id).positions().to_vec();
     let error = world.step().unwrap_err();
     assert!(matches!(error, StepError::NotConverged { iterations: 8, .. }), "{error}");

@@ -156,17 +156,18 @@ fn steps_that_throw_tissue_across_a_hump_are_made_in_parts() {
     assert!(again > 0);
 }
 
-/// A corner let go from a thousand sizes behind the other side, or more, in steps of 20 s: where rounding wills it, in one case of twenty, the
-/// solution that is found gains energy, in 64 parts too. Such a step is undone, and says so.
+/// A corner let go from a thousand sizes behind the other side, or more, in steps of 20 s: where rounding willed it, in one case of twenty, the
+/// solution that was found gained energy, in 64 parts too, and the step was undone. With shorter parts to begin with none is for that. (One in fifteen is not
+/// solved, and undone.)
 #[test]
-fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
+fn full_steps_that_gain_energy_in_equal_parts_begin_with_shorter_ones() {
     let newton = Newton::Full { relative: 1e-4, at_most: 200 };
     let settings = Implicit {
         newton,
         linear: Stop::Tolerance { relative: 1e-6, at_most: 100 },
         ..Implicit::accurate(Scheme::BackwardEuler)
     };
-    let mut said = 0;
+    let (mut shorter, mut unsolved) = (0, 0);
     for depth in (0..120).map(|number| 100.0 * 1.02_f64.powi(number)) {
         let body = Body::new(tetrahedra(), 1000.0).model(TotalLagrangian::new(neo_hookean())).damping(50.0).fix(root());
         let (mut world, id) = implicit_world(NO_GRAVITY, 20.0, settings, body);
@@ -176,42 +177,68 @@ fn a_full_step_that_gains_energy_however_it_is_made_is_undone() {
         let rounding = f64::EPSILON * start;
         for _ in 0..6 {
             let before = world.body(id).positions().to_vec();
-            let Err(error) = world.step() else {
-                let now = energy(&mut world, id);
-                assert!(now <= start + rounding, "{now} J after {start} J");
-                start = now;
-                continue;
-            };
-            assert_eq!(world.body(id).positions(), &before[..]);
-            said += usize::from(matches!(error, StepError::GainedEnergy { .. }));
-            break;
+            match world.step() {
+                Ok(report) => shorter += u32::from(report.retries > 6),
+                Err(StepError::NotConverged { .. }) => {
+                    assert_eq!(world.body(id).positions(), &before[..]);
+                    unsolved += 1;
+                    break;
+                }
+                Err(error) => panic!("{error}"),
+            }
+            let now = energy(&mut world, id);
+            assert!(now <= start + rounding, "{now} J after {start} J");
+            start = now;
         }
     }
-    assert!(said > 0);
+    assert!(shorter > 0 && unsolved <= 12, "{shorter} with shorter parts, {unsolved} unsolved");
 }
 
-/// In the last attempt no iteration climbs, and linear solves have four times as many iterations. Let go at a thousand times their length, free tissue
-/// integrated at the nodes gained energy in 64 parts too and was undone in the first step; hexahedra of neo-Hookean tissue in the ninth,
-/// with 8e-7 of their forces left after 400 iterations of Newton's method whose linear solves ended after 100.
+/// In the last attempts no iteration climbs, and linear solves have four times as many iterations. Let go at a thousand times its length, free tissue
+/// integrated at the nodes gained energy in 64 parts too and was undone in the first step; at a little more, it did with those iterations as well, and
+/// comes back by parts that are shorter to begin with.
 #[test]
-fn the_last_attempt_finds_what_others_do_not() {
+fn the_last_attempts_find_what_others_do_not() {
     let newton = Newton::Full { relative: 1e-8, at_most: 100 };
     let linear = Stop::Tolerance { relative: 1e-6, at_most: 100 };
     let settings = Implicit { newton, linear, ..Implicit::accurate(Scheme::BackwardEuler) };
-    let stable = uniform(StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap());
-    let free = Body::new(TetMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(NodallyIntegrated::new(stable));
-    let held = Body::new(HexMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(TotalLagrangian::new(neo_hookean()));
-    for body in [free, held.fix(root())] {
+    let [mut last, mut shorter] = [0; 2];
+    for percent in 0..8 {
+        let stable = uniform(StableNeoHookean::from_young_poisson(10e3, 0.4).unwrap());
+        let body = Body::new(TetMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(NodallyIntegrated::new(stable));
         let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, settings, body.damping(50.0));
-        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
-        let (mut before, mut last) = (energy(&mut world, id), 0);
+        let stretch = 1000.0 + 10.0 * f64::from(percent);
+        world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, stretch * x.z));
+        let start = energy(&mut world, id);
+        let mut before = start;
         for _ in 0..30 {
-            last += usize::from(world.step().unwrap().retries == 6);
+            let retries = world.step().unwrap().retries;
+            (last, shorter) = (last + u32::from(retries == 6), shorter + u32::from(retries > 6));
             let now = energy(&mut world, id);
             assert!(now <= before, "{now} J after {before} J");
             before = now;
         }
-        assert!(last > 0);
+        assert!(before < 1e-6 * start, "{before} J are left of {start} J, stretched {stretch} times");
+    }
+    assert!(last > 0 && shorter > 0, "{last} steps in 64 parts, {shorter} in more");
+}
+
+/// With 8e-7 of their forces left after 400 iterations of Newton's method whose linear solves ended after 100, hexahedra of neo-Hookean tissue were undone
+/// in the ninth step.
+#[test]
+fn full_steps_of_hexahedra_from_a_thousand_times_the_length_are_solved() {
+    let newton = Newton::Full { relative: 1e-8, at_most: 100 };
+    let linear = Stop::Tolerance { relative: 1e-6, at_most: 100 };
+    let settings = Implicit { newton, linear, ..Implicit::accurate(Scheme::BackwardEuler) };
+    let body = Body::new(HexMesh::box_grid([2; 3], [0.1; 3]), 1000.0).model(TotalLagrangian::new(neo_hookean()));
+    let (mut world, id) = implicit_world(NO_GRAVITY, 2e-2, settings, body.damping(50.0).fix(root()));
+    world.body_mut(id).set_positions(|x| Vector::new(x.x, x.y, 1000.0 * x.z));
+    let mut before = energy(&mut world, id);
+    for _ in 0..30 {
+        world.step().unwrap();
+        let now = energy(&mut world, id);
+        assert!(now <= before, "{now} J after {before} J");
+        before = now;
     }
 }
 

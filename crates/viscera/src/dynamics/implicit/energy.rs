@@ -28,7 +28,7 @@ const GAIN: f64 = 1e-6;
 const GAIN_UNBOUNDED: f64 = 0.1;
 /// A linearised step that is looked at gains no more than this share.
 const GAIN_LINEARISED: f64 = 0.01;
-/// In the last attempt, where the forces have a potential, all its parts together gain no more than so many times what there was before them and what
+/// In the last attempts, where the forces have a potential, all the parts together gain no more than so many times what there was before them and what
 /// was done to them since: what one of 64 alone may gain, they may to the 64th power.
 const GAIN_AT_LAST: f64 = 9.0;
 /// A linearised step that leaves more than this share of the forces without balance is looked at, with schemes without a bound: half the work of

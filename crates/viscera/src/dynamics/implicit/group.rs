@@ -38,7 +38,7 @@ pub(crate) enum Refused {
 }
 
 /// Advances bodies that are solved together, in memory of their own, by one step; of all `bodies` of a world and the memory of each.
-/// Gives why it is not to be taken as well, if so. The last attempt takes more: a linearised step that gains some energy, and one in place of
+/// Gives why it is not to be taken as well, if so. The last attempts take more: a linearised step that gains some energy, and one in place of
 /// full equations that may have no solution.
 pub(crate) fn advance<T: Scalar>(
     (bodies, memories): (&mut [SimulatedBody<T>], &mut [ImplicitMemory<T>]),
@@ -87,7 +87,7 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) settings: &'a Implicit,
     pub(super) numbers: Numbers,
     pub(super) interval: Interval<'a, T>,
-    /// Whether there will be no other attempt at this step.
+    /// Whether this is one of the last attempts at this step.
     pub(super) is_last: bool,
     pub(super) stages: Stages<'a>,
     /// Whether a linearised step had to be solved in full instead.
@@ -174,7 +174,7 @@ impl<T: Scalar> Group<'_, T> {
         self.each(|step| step.coast());
     }
 
-    /// Solves the step as it was asked for, in the last attempt in two ways. Forces without a potential jump where cells turn inside out, and full
+    /// Solves the step as it was asked for, in the last attempts in two ways. Forces without a potential jump where cells turn inside out, and full
     /// equations may have no solution there however short the step: it is linearised then, and not converged. With one, no iteration climbs, and
     /// only where that finds no good solution, as along narrow valleys that bend, some may.
     fn solve(&mut self) -> ImplicitReport {

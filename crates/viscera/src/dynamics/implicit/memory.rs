@@ -48,7 +48,7 @@ pub struct ImplicitMemory<T> {
     pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
     pub(super) history: Vec<f64>,
-    /// What parts of a step gained from nobody in its last attempt, and the energy before them with the work of the loads since [J].
+    /// What parts of a step gained from nobody in one of its last attempts, and the energy before them with the work of the loads since [J].
     pub(super) gain: (f64, f64),
 }
 

@@ -32,7 +32,7 @@ const LOST: u32 = 10;
 const ENOUGH: f64 = 1e-4;
 /// How much farther the line search goes.
 const FARTHER: f64 = 4.0;
-/// The last attempt at a step takes so many times as many iterations as others, and with a potential as many of linear solves: without one, as many
+/// The last attempts at a step take so many times as many iterations as others, and with a potential as many of linear solves: without one, as many
 /// settings of warped stiffness were undone either way. Tissue integrated at the nodes, free and let go at a thousand times its length, had
 /// not balanced after 100 in a 64th part of 0.02 s, and has after 163. Hexahedra of neo-Hookean tissue had not after 400 with linear solves of at
 /// most 100, and have after 4.

@@ -33,7 +33,7 @@ pub enum Newton {
         /// The residual force has to fall below this share of the forces that balance [> 0, < 1], or below what rounding
         /// of the positions makes of them.
         relative: f64,
-        /// The most iterations [1 to 1e6]. A step that needs more is made in parts; one whose 64th part needs four times as many is undone
+        /// The most iterations [1 to 1e6]. A step that needs more is made in parts; one whose 64th part, and shorter ones, need four times as many is undone
         /// and is an error, unless it has come to rest on a crease of its energy
         /// ([`ForceModel::has_creases`](crate::model::ForceModel::has_creases)). Where forces have no energy
         /// ([`ForceModel::has_potential`](crate::model::ForceModel::has_potential)) there may be no solution at all: parts that have none are
@@ -67,7 +67,7 @@ pub enum Preconditioning {
 }
 
 impl Newton {
-    /// The most iterations, in the last attempt at a step or one before.
+    /// The most iterations, in one of the last attempts at a step or one before.
     pub(super) fn at_most(self, is_last: bool) -> u32 {
         match self {
             Self::Linearised => INSTEAD.1,

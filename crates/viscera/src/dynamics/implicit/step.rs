@@ -17,7 +17,7 @@ pub(super) struct Step<'a, T: Scalar> {
     pub(super) from: f64,
     pub(super) dt: f64,
     pub(super) drive: &'a Drive<'a, T>,
-    /// Whether there will be no other attempt at it.
+    /// Whether this is one of the last attempts at it.
     pub(super) is_last: bool,
     pub(super) stages: Stages<'a>,
 }
