@@ -83,6 +83,10 @@ impl<R: Real> Real for Dual<R> {
     fn any(mask: Self::Mask) -> bool {
         R::any(mask)
     }
+    #[inline(always)]
+    fn all(mask: Self::Mask) -> bool {
+        R::all(mask)
+    }
 }
 
 impl<R: Real> Add for Dual<R> {

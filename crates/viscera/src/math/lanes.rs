@@ -152,6 +152,10 @@ macro_rules! impl_lanes {
             fn any(mask: Self::Mask) -> bool {
                 mask.any_true()
             }
+            #[inline(always)]
+            fn all(mask: Self::Mask) -> bool {
+                mask.all_true()
+            }
         }
     };
 }

@@ -47,6 +47,8 @@ pub trait Real:
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
     /// Whether the mask holds in any lane.
     fn any(mask: Self::Mask) -> bool;
+    /// Whether the mask holds in all lanes.
+    fn all(mask: Self::Mask) -> bool;
 
     /// Zero, in every lane.
     #[inline(always)]
@@ -120,6 +122,10 @@ macro_rules! impl_real_for_scalar {
             }
             #[inline(always)]
             fn any(mask: bool) -> bool {
+                mask
+            }
+            #[inline(always)]
+            fn all(mask: bool) -> bool {
                 mask
             }
         }

@@ -109,7 +109,8 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
         let (this, matrix, blocks) = (&*self, &*matrix, node_blocks(rhs.len()));
         let data = ((NodeBlocks(residual), ReadBlocks(rhs)), (NodeBlocks(product), NodeBlocks(direction)));
         let work = |block, ((NodeBlocks(r), ReadBlocks(b)), (NodeBlocks(q), NodeBlocks(p))): Starting<'_, T>| {
-            matrix.finish(block, p, q, &filtered);
+            matrix.finish(block, p, q);
+            filtered.apply(block * NODE_BLOCK, q);
             r.copy_from_slice(b);
             filtered.apply(block * NODE_BLOCK, r);
             let squares = dispatch!(dispatch_level(), _simd => {
@@ -119,7 +120,7 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
                 combine_into(r, T::ONE, -T::ONE, q);
                 [of_rhs, of_product, this.apply_to_block(block, r, q)]
             });
-            filtered.apply(block * NODE_BLOCK, q);
+            filtered.apply_to_sliding(block * NODE_BLOCK, q);
             squares
         };
         let squares = executor.fold(blocks, data, &work, &|a, b| std::array::from_fn(|i| a[i] + b[i]));
@@ -132,13 +133,15 @@ impl<T: Scalar> Preconditioner<T> for BlockJacobi<T> {
         let (this, matrix, blocks) = (&*self, &*matrix, node_blocks(residual.len()));
         let data = ((NodeBlocks(x), NodeBlocks(residual)), (NodeBlocks(product), NodeBlocks(direction)));
         let work = |block, ((NodeBlocks(x), NodeBlocks(r)), (NodeBlocks(q), NodeBlocks(p))): Striding<'_, T>| {
-            matrix.finish(block, p, q, &filtered);
+            matrix.finish(block, p, q);
+            // Held nodes have zeros in P⁻¹, and nobody reads the residual that reactions leave there.
+            filtered.apply_to_sliding(block * NODE_BLOCK, q);
             let square = dispatch!(dispatch_level(), _simd => {
                 combine_into(x, T::ONE, length, p);
                 combine_into(r, T::ONE, -length, q);
                 this.apply_to_block(block, r, q)
             });
-            filtered.apply(block * NODE_BLOCK, q);
+            filtered.apply_to_sliding(block * NODE_BLOCK, q);
             square
         };
         let square = executor.fold(blocks, data, &work, &|a, b| a + b).unwrap_or(0.0);

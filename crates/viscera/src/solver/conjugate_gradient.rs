@@ -76,8 +76,10 @@ pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,
     product: Vec<Vec3<T>>,
-    /// Nodes with a prescribed direction.
-    filtered: Vec<u32>,
+    /// Nodes of which nothing is free.
+    held: Vec<u32>,
+    /// Nodes that are free in a plane or along a line.
+    sliding: Vec<u32>,
     history: Vec<f64>,
 }
 
@@ -101,8 +103,8 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn new(nodes: usize, iterations: u32) -> Self {
         let zeros = || vec![Vec3::ZERO; nodes];
         let history = Vec::with_capacity(iterations as usize + 1);
-        let filtered = Vec::with_capacity(nodes);
-        Self { residual: zeros(), direction: zeros(), product: zeros(), filtered, history }
+        let (held, sliding) = (Vec::with_capacity(nodes), Vec::with_capacity(nodes));
+        Self { residual: zeros(), direction: zeros(), product: zeros(), held, sliding, history }
     }
 
     /// Residuals of the last solve over their scale: at the start and after each iteration.
@@ -126,9 +128,7 @@ impl<T: Scalar> ConjugateGradient<T> {
     ) -> SolveReport {
         let executor = problem.executor;
         self.history.clear();
-        self.filtered.clear();
-        let nodes = problem.filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free);
-        self.filtered.extend(nodes.map(|(node, _)| node as u32));
+        self.note_filtered(problem.filters);
         let (mut size, scale) = self.start(matrix, preconditioner, problem, x);
         let goal = stop.relative() * scale;
         self.note(size.squared_norm, scale);
@@ -141,8 +141,8 @@ impl<T: Scalar> ConjugateGradient<T> {
                 ending = Ending::Converged;
                 break;
             }
-            let Self { residual, direction, product, filtered, .. } = &mut *self;
-            let filtered = Filtered { nodes: filtered, filters: problem.filters };
+            let Self { residual, direction, product, held, sliding, .. } = &mut *self;
+            let filtered = Filtered { held, sliding, filters: problem.filters };
             let curvature = matrix.apply_along(Turn { weight, direction, product, filtered }, executor);
             iterations += 1;
             if curvature.is_nan() || curvature <= 0.0 {
@@ -181,8 +181,8 @@ impl<T: Scalar> ConjugateGradient<T> {
             x.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
             product.copy_from_slice(x);
         });
-        let Self { residual, direction, product, filtered, .. } = self;
-        let filtered = Filtered { nodes: filtered, filters: problem.filters };
+        let Self { residual, direction, product, held, sliding, .. } = self;
+        let filtered = Filtered { held, sliding, filters: problem.filters };
         matrix.apply_along(Turn { weight: None, direction, product, filtered }, executor);
         preconditioner.start(matrix, Start { rhs: problem.rhs, direction, product, residual, filtered }, executor)
     }
@@ -195,9 +195,8 @@ impl<T: Scalar> ConjugateGradient<T> {
         rho: f64,
         x: &mut [Vec3<T>],
     ) {
-        let filtered = Filtered { nodes: &self.filtered, filters: problem.filters };
         let blocks = self.direction.chunks_mut(NODE_BLOCK).zip(self.product.chunks_mut(NODE_BLOCK));
-        blocks.enumerate().for_each(|(block, (p, q))| matrix.finish(block, p, q, &filtered));
+        blocks.enumerate().for_each(|(block, (p, q))| matrix.finish(block, p, q));
         let along = self.direction.iter().zip(problem.masses);
         let inertia: f64 = along.map(|(p, &mass)| (p.squared_norm() * mass).to_f64()).sum();
         if inertia > 0.0 {
@@ -205,6 +204,14 @@ impl<T: Scalar> ConjugateGradient<T> {
             for (x, &direction) in x.iter_mut().zip(&self.direction) {
                 *x = direction.mul_add(length, *x);
             }
+        }
+    }
+
+    fn note_filtered(&mut self, filters: &[Filter<T>]) {
+        self.held.clear();
+        self.sliding.clear();
+        for (node, filter) in filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {
+            if *filter == Filter::Held { &mut self.held } else { &mut self.sliding }.push(node as u32);
         }
     }
 

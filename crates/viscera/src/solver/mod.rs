@@ -56,8 +56,7 @@ pub trait LinearOperator<T: Scalar>: Sync {
         dot(executor, direction, product)
     }
 
-    /// Does on a block of nodes, as the loops over nodes divide them, what the last [`LinearOperator::apply_along`] left to be done. Whoever looks
-    /// at direction and product next does so once on each block.
-    fn finish(&self, _block: usize, _direction: &mut [Vec3<T>], _product: &mut [Vec3<T>], _filtered: &Filtered<'_, T>) {
-    }
+    /// Does on a block of nodes, as the loops over nodes divide them, what the last [`LinearOperator::apply_along`] left to be done; all but the
+    /// filters. Whoever looks at direction and product next does so once on each block.
+    fn finish(&self, _block: usize, _direction: &mut [Vec3<T>], _product: &mut [Vec3<T>]) {}
 }

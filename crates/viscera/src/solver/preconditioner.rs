@@ -1,6 +1,6 @@
 use super::vectors::step_along;
 use super::{Filter, Filtered, LinearOperator};
-use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
+use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 
 /// A symmetric positive definite stand-in P for a matrix A whose systems are easier to solve.
@@ -102,6 +102,7 @@ fn finish<T: Scalar>(
 ) {
     let data = (NodeBlocks(direction), NodeBlocks(product));
     executor.each(node_blocks(data.0.0.len()), data, &|block, (NodeBlocks(direction), NodeBlocks(product))| {
-        matrix.finish(block, direction, product, filtered);
+        matrix.finish(block, direction, product);
+        filtered.apply(block * NODE_BLOCK, product);
     });
 }

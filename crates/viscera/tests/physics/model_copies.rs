@@ -39,7 +39,7 @@ fn follow<T: Precision>(tolerance: f64) -> usize {
             model.add_product(&x, &expected_direction, &mut plain, &mut expected);
             let found = scratches.each_mut().map(|scratch| {
                 let (mut direction, mut product) = (vec![Vec3::ZERO; nodes], corrected.clone());
-                let filtered = Filtered { nodes: &[], filters: &[] };
+                let filtered = Filtered { held: &[], sliding: &[], filters: &[] };
                 let turn = Turn { weight, direction: &mut direction, product: &mut product, filtered };
                 let (patches, curvature) = model.sum_product(&x, &turn, &masses, scratch)?;
                 let mut sums = vec![Vec3::ZERO; nodes];

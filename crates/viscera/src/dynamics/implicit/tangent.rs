@@ -1,9 +1,9 @@
 use crate::body::{Actuators, ExternalStiffness, NodalLoads, SimulatedBody};
 use crate::contact::Contacts;
-use crate::executor::{Executor, NODE_BLOCK};
+use crate::executor::Executor;
 use crate::math::{Scalar, Vec3};
 use crate::model::{ForceModel, Patches, Scratch};
-use crate::solver::{BlockMatrix, Filtered, LinearOperator, Turn, add_weighted, dot, set_weighted, turn_block};
+use crate::solver::{BlockMatrix, LinearOperator, Turn, add_weighted, dot, set_weighted, turn_block};
 use crate::stage::{Stage, Stages};
 
 /// What an implicit step knows of its matrix, which is divided by the factor of the stiffness.
@@ -119,11 +119,10 @@ impl<T: Scalar> LinearOperator<T> for Tangent<'_, T> {
         dot(executor, direction, product)
     }
 
-    fn finish(&self, block: usize, direction: &mut [Vec3<T>], product: &mut [Vec3<T>], filtered: &Filtered<'_, T>) {
+    fn finish(&self, block: usize, direction: &mut [Vec3<T>], product: &mut [Vec3<T>]) {
         if let Some((patches, weight)) = self.unfinished {
             turn_block(weight, direction, product);
             self.scratch.write_sums_of_block(patches, block, product);
-            filtered.apply(block * NODE_BLOCK, product);
         }
     }
 }

@@ -26,24 +26,18 @@ pub fn polar<R: Real>(f: &Mat3<R>) -> Mat3<R> {
     let arrived = one.like(R::ROUNDING.sqrt());
     let (mut x, mut cofactor) = (*f, f.cofactor());
     let mut determinant = f.columns[0].dot(cofactor.columns[0]);
-    if !all(one.zero_like().less_than(determinant), one) {
+    if !R::all(one.zero_like().less_than(determinant)) {
         return closed(f);
     }
     for _ in 0..POLAR_STEPS {
         x = cofactor.mul_add(one.half() / determinant, x * one.half());
         cofactor = x.cofactor();
         determinant = x.columns[0].dot(cofactor.columns[0]);
-        if all((determinant - one).abs().less_than(arrived), one) {
+        if R::all((determinant - one).abs().less_than(arrived)) {
             return cofactor.mul_add(one.half() / determinant, x * one.half());
         }
     }
     closed(f)
-}
-
-/// Whether a mask holds in all lanes of numbers like `one`.
-#[inline(always)]
-fn all<R: Real>(mask: R::Mask, one: R) -> bool {
-    !R::any(one.half().less_than(R::select(mask, one.zero_like(), one)))
 }
 
 /// The same in closed form, for every F.
@@ -89,8 +83,7 @@ fn closed<R: Real>(f: &Mat3<R>) -> Mat3<R> {
 
     // false for NaN, which a null F and a multiple root leave
     let good = one.like(SMALLEST_ZETA).less_than(zeta);
-    let bad = R::select(good, one.zero_like(), one);
-    if R::any(one.half().less_than(bad)) {
+    if !R::all(good) {
         return Mat3::select(good, rotation, svd(&f).rotation());
     }
     rotation

@@ -15,7 +15,7 @@ use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
-use crate::model::patch::{Diagonal, Element, Record, TetFans};
+use crate::model::patch::{Deformed, Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Patches, Scratch};
 use crate::solver::Turn;
@@ -310,13 +310,27 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
         self.0.linearized_columns()
     }
 
+    #[inline(always)]
+    fn deformation<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>> {
+        *edges * self.0.load::<S, PLAIN>(simd, slot).inverse
+    }
+
+    #[inline(always)]
+    fn rotation<S: Simd>(&self, f: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>> {
+        self.0.formulation::<PLAIN>().rotation(f)
+    }
+
     // With the gradients of a body at rest, D gᵀ is √(V μ) F Rᵀ: what it is above √(V μ) I is strain, in the turned frame.
     #[inline(always)]
-    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, row: &mut [T]) -> Mat3<T::Lanes<S>> {
+    fn record<S: Simd>(
+        &self,
+        simd: S,
+        slot: usize,
+        &Deformed { edges, f, r }: &Deformed<T::Lanes<S>>,
+        row: &mut [T],
+    ) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
             (self.0.load::<S, PLAIN>(simd, slot), self.0.formulation::<PLAIN>());
-        let f = *edges * inverse;
-        let r = formulation.rotation(&f);
         let (transport, scale) = formulation.transport(&r, &f);
         let root = (volume * scale * hooke.mu).sqrt();
         let turned = Turned {
@@ -333,7 +347,7 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
             ratio.store(&mut row[FIBRE_RATIO * T::LANES..]);
         }
         if formulation.is_linear_in_its_frame() {
-            turned.forces(&(*edges * turned.gradients.transpose() - Mat3::diagonal(root)))
+            turned.forces(&(edges * turned.gradients.transpose() - Mat3::diagonal(root)))
         } else {
             formulation.stress(&hooke, &r, &f) * volume * inverse.transpose()
         }

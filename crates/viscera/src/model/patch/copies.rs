@@ -15,7 +15,7 @@ pub(super) struct Copies {
 }
 
 /// No row has this number.
-const NONE: u32 = u32::MAX / 4;
+const NONE: u32 = u32::MAX;
 
 impl Copies {
     /// Those of `nodes` nodes: node and row of each, in the order of the patches.
@@ -45,12 +45,12 @@ impl Copies {
         self.firsts[node as usize] as usize == row
     }
 
-    /// Hands each node to `first` with the row of its first copy, which is beyond all rows where there is none; then to `other` with that of each other.
+    /// Hands each node to `first` with the row of its first copy, if it has one; then to `other` with that of each other.
     pub(super) fn each<V: Send>(
         &self,
         executor: &Executor,
         out: &mut [V],
-        first: &(impl Fn(&mut V, usize) + Sync),
+        first: &(impl Fn(&mut V, Option<usize>) + Sync),
         other: &(impl Fn(&mut V, usize) + Sync),
     ) {
         executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
@@ -64,12 +64,12 @@ impl Copies {
         &self,
         block: usize,
         out: &mut [V],
-        first: impl Fn(&mut V, usize),
+        first: impl Fn(&mut V, Option<usize>),
         other: impl Fn(&mut V, usize),
     ) {
         let start = block * NODE_BLOCK;
         for (sum, &row) in out.iter_mut().zip(&self.firsts[start..]) {
-            first(sum, row as usize);
+            first(sum, (row != NONE).then_some(row as usize));
         }
         for &(node, row) in &self.others[self.starts[block] as usize..self.starts[block + 1] as usize] {
             other(&mut out[node as usize - start], row as usize);

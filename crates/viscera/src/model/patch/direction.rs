@@ -14,18 +14,17 @@ impl Patches {
         patch: usize,
         turn: &Turn<'_, T>,
         masses: &[T],
-        [sums, direction, inertia]: [&mut PatchRows<T>; 3],
+        ([sums, direction], inertia): ([&mut PatchRows<T>; 2], &mut [T]),
     ) {
         let nodes = self.nodes(patch);
         if turn.weight.is_none() {
-            for (copy, (&node, row)) in (self.row_starts[patch]..).zip(nodes.iter().zip(inertia.iter_mut())) {
-                let mass = if self.copies.is_first(node, copy) { masses[node as usize] } else { T::ZERO };
-                *row = [mass, mass, mass, T::ZERO];
+            for (copy, (&node, mass)) in (self.row_starts[patch]..).zip(nodes.iter().zip(inertia.iter_mut())) {
+                *mass = if self.copies.is_first(node, copy) { masses[node as usize] } else { T::ZERO };
             }
             direction.fill([T::ZERO; 4]);
         }
         let weight = turn.weight.unwrap_or(T::ZERO);
-        dispatch!(dispatch_level(), _simd => follow(nodes, weight, turn.product, [sums, direction, inertia]));
+        dispatch!(dispatch_level(), _simd => follow((nodes, inertia), weight, turn.product, [sums, direction]));
     }
 
     /// p·(M + K) p over the copies of a patch.
@@ -38,17 +37,17 @@ impl Patches {
 /// p ← z + w p, and M p. Row by row, of which the compiler makes a register each.
 #[inline(always)]
 fn follow<T: Scalar>(
-    nodes: &[u32],
+    (nodes, inertia): (&[u32], &[T]),
     weight: T,
     corrected: &[Vec3<T>],
-    [sums, direction, inertia]: [&mut PatchRows<T>; 3],
+    [sums, direction]: [&mut PatchRows<T>; 2],
 ) {
-    for (((&node, sum), direction), mass) in nodes.iter().zip(sums).zip(direction).zip(inertia) {
+    for (((&node, &mass), sum), direction) in nodes.iter().zip(inertia).zip(sums).zip(direction) {
         let Vec3 { x, y, z } = corrected[node as usize];
-        let (corrected, mut turned, mut product) = ([x, y, z, T::ZERO], *direction, *mass);
+        let (corrected, mut turned, mut product) = ([x, y, z, T::ZERO], *direction, [T::ZERO; 4]);
         for i in 0..4 {
             turned[i] = turned[i].mul_add(weight, corrected[i]);
-            product[i] = turned[i] * product[i];
+            product[i] = turned[i] * mass;
         }
         (*direction, *sum) = (turned, product);
     }

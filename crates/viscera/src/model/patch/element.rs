@@ -23,11 +23,35 @@ pub(crate) trait Diagonal<T: Scalar>: Sync {
 }
 
 /// What a loop keeps of tetrahedra, as a function of their edges, and what it finds of their forces on the way.
+///
+/// It is asked in three steps, each of all tetrahedra of a batch before the next: one after the other, a tetrahedron is a chain of operations that wait
+/// for one another, longer than processors look ahead.
 pub(crate) trait Record<T: Scalar>: Sync {
     /// How many numbers it keeps of each.
     fn columns(&self) -> usize;
+    /// The deformation gradients F of the tetrahedra of a slot.
+    fn deformation<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
+    /// Their rotations R.
+    fn rotation<S: Simd>(&self, f: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
     /// Writes the block of rows of a slot; gives the forces on the corners 1, 2, 3.
-    fn record<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>, block: &mut [T]) -> Mat3<T::Lanes<S>>;
+    fn record<S: Simd>(
+        &self,
+        simd: S,
+        slot: usize,
+        place: &Deformed<T::Lanes<S>>,
+        block: &mut [T],
+    ) -> Mat3<T::Lanes<S>>;
+}
+
+/// Tetrahedra that are deformed.
+#[derive(Clone, Copy)]
+pub(crate) struct Deformed<R> {
+    /// Edges D.
+    pub(crate) edges: Mat3<R>,
+    /// Deformation gradients F.
+    pub(crate) f: Mat3<R>,
+    /// Rotations R of F.
+    pub(crate) r: Mat3<R>,
 }
 
 /// A number of tetrahedra, as a function of their edges.

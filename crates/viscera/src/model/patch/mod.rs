@@ -11,11 +11,11 @@ mod fan;
 mod tet_fans;
 mod visitor;
 
-pub(crate) use element::{Diagonal, Element, Measure, Record};
+pub(crate) use element::{Deformed, Diagonal, Element, Measure, Record};
 pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
-use crate::executor::{Divide, Executor};
+use crate::executor::{Divide, Executor, NodeBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3};
 use crate::mesh::partition;
 
@@ -129,20 +129,21 @@ impl Patches {
     /// Adds to each node of `out` the rows of its copies.
     pub(crate) fn add_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
         let add = |sum: &mut Vec3<T>, row| *sum += force(rows, row);
-        self.copies.each(executor, out, &add, &add);
+        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
     }
 
     /// Writes to each node of `out` the sum of the rows of its copies.
     pub(crate) fn write_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        let (write, add) =
-            (|sum: &mut Vec3<T>, row| *sum = force(rows, row), |sum: &mut Vec3<T>, row| *sum += force(rows, row));
-        self.copies.each(executor, out, &write, &add);
+        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
+            self.write_up_block(block, rows, out);
+        });
     }
 
     /// The same for a block of nodes.
     #[inline(always)]
     pub(crate) fn write_up_block<T: Scalar>(&self, block: usize, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        self.copies.each_of_block(block, out, |sum, row| *sum = force(rows, row), |sum, row| *sum += force(rows, row));
+        let write = |sum: &mut Vec3<T>, row: Option<usize>| *sum = row.map_or(Vec3::ZERO, |row| force(rows, row));
+        self.copies.each_of_block(block, out, write, |sum, row| *sum += force(rows, row));
     }
 
     /// Adds to each node of `out` the rows of its copies, where `out` has rows as well.
@@ -151,7 +152,7 @@ impl Patches {
             let [x, y, z] = force(rows, row).to_array();
             *sum = [sum[0] + x, sum[1] + y, sum[2] + z, sum[3]];
         };
-        self.copies.each(executor, out, &add, &add);
+        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
     }
 
     /// Adds to each node of `out` the symmetric blocks of its copies: xx, yy, zz in one row, xy, xz, yz in the next.
@@ -160,14 +161,15 @@ impl Patches {
             let ([xx, yy, zz], [xy, xz, yz]) = (force(rows, 2 * row).to_array(), force(rows, 2 * row + 1).to_array());
             *sum += Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz });
         };
-        self.copies.each(executor, out, &add, &add);
+        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
     }
 }
 
-/// The force in a row; none where there is no such row.
+/// The force in a row.
 #[inline(always)]
 fn force<T: Scalar>(rows: &[[T; 4]], row: usize) -> Vec3<T> {
-    rows.get(row).map_or(Vec3::ZERO, |&[x, y, z, _]| Vec3::new(x, y, z))
+    let [x, y, z, _] = rows[row];
+    Vec3::new(x, y, z)
 }
 
 /// Values of the patches, patch after patch.

@@ -1,6 +1,6 @@
 use fearless_simd::{Simd, dispatch};
 
-use super::element::{Diagonal, Element, Measure, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
@@ -242,14 +242,14 @@ impl TetFans {
         let (sums, rest) = rows.split_at_mut(count);
         let (directions, inertia) = rest.split_at_mut(count);
         let per_patch = |rows| self.patches.per_patch(rows, 1);
-        let data = ((per_patch(sums), per_patch(directions)), per_patch(&mut inertia[..count]));
+        let inertia = self.patches.per_patch(&mut inertia.as_flattened_mut()[..count], 1);
+        let data = ((per_patch(sums), per_patch(directions)), inertia);
         let work = |patch: usize, ((sums, directions), inertia): ProductRows<'_, T>| {
-            let (([sums], _), ([direction], _), ([inertia], _)) =
-                (sums.values.as_chunks_mut(), directions.values.as_chunks_mut(), inertia.values.as_chunks_mut())
+            let (([sums], _), ([direction], _)) = (sums.values.as_chunks_mut(), directions.values.as_chunks_mut())
             else {
                 return 0.0;
             };
-            self.patches.turn(patch, turn, masses, [sums, direction, inertia]);
+            self.patches.turn(patch, turn, masses, ([sums, direction], inertia.values));
             let mut places = no_rows::<T, 1>();
             if FIELDS > 1 {
                 self.patches.gather(patch, &[x], &mut places);
@@ -347,10 +347,26 @@ impl TetFans {
             let mut places = no_rows::<T, 1>();
             sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
             self.patches.gather(patch, &[x], &mut places);
-            let keep = Keep { record, values: table.values, first: self.slot_starts[patch], block };
-            dispatch!(dispatch_level(), simd => self.scatter_with(simd, patch, places.each_ref(), keep, sums));
+            let values = (table.values, block);
+            dispatch!(dispatch_level(), simd => self.scatter_and_keep(simd, patch, &places[0], (record, values), sums));
         });
         &self.patches
+    }
+
+    #[inline(always)]
+    fn scatter_and_keep<T: Scalar, S: Simd>(
+        &self,
+        simd: S,
+        patch: usize,
+        places: &PatchRows<T>,
+        (record, (values, block)): (&impl Record<T>, (&mut [T], usize)),
+        sums: &mut PatchRows<T>,
+    ) {
+        let zero = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
+        let (first, batch) = (self.slot_starts[patch], (0, 0));
+        let deformed = [Deformed { edges: zero, f: zero, r: zero }; LONGEST];
+        let mut keep = Keep { record, values, first, block, sums, batch, places: deformed, simd };
+        self.walk(simd, patch, [places], &mut keep);
     }
 
     /// The largest of what `measure` says of each tetrahedron at `x`, and 0 if there is none above.
@@ -417,7 +433,7 @@ impl TetFans {
 }
 
 /// Sums, direction and masses of a product on the copies of the nodes.
-type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, [T; 4]>);
+type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, T>);
 
 #[inline(always)]
 fn largest_lane<T: Scalar, S: Simd>(value: impl Lanes<T, S>) -> T {

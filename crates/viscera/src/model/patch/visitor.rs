@@ -2,7 +2,7 @@
 
 use fearless_simd::Simd;
 
-use super::element::{Diagonal, Element, Measure, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
@@ -47,22 +47,6 @@ impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Forces<T, S
     }
 }
 
-/// Writes rows, slot by slot.
-pub(super) struct Keep<'a, T, R> {
-    pub(super) record: &'a R,
-    pub(super) values: &'a mut [T],
-    pub(super) first: usize,
-    pub(super) block: usize,
-}
-
-impl<T: Scalar, S: Simd, R: Record<T>> Forces<T, S, 1> for Keep<'_, T, R> {
-    #[inline(always)]
-    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let start = (slot - self.first) * self.block;
-        self.record.record(simd, slot, &edges[0], &mut self.values[start..start + self.block])
-    }
-}
-
 /// Forces of an element, and the largest of what is measured of it.
 pub(super) struct Measuring<'a, E, M, V> {
     pub(super) element: &'a E,
@@ -94,24 +78,72 @@ impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T
 
     #[inline(always)]
     fn end(&mut self, nodes: &BatchNodes<'_>) {
-        // `ring` sums up the forces on the ring: what is left to make them all zero acts on the origin. `carried` is what the last tetrahedron
-        // exerts on the node that it shares with the next, and `kept` waits where the ring will close.
-        let [mut end, kept, mut carried] = self.forces[0].columns;
-        let mut ring = kept;
-        if !nodes.is_closed {
-            add(kept, &nodes.ring[..T::LANES], self.sums);
+        add_up(&self.forces, nodes, self.sums);
+    }
+}
+
+/// Adds up the forces of a batch.
+#[inline(always)]
+fn add_up<T: Scalar, S: Simd, L: Lanes<T, S>>(
+    forces: &[Mat3<L>; LONGEST],
+    nodes: &BatchNodes<'_>,
+    sums: &mut PatchRows<T>,
+) {
+    // `ring` sums up the forces on the ring: what is left to make them all zero acts on the origin. `carried` is what the last tetrahedron
+    // exerts on the node that it shares with the next, and `kept` waits where the ring will close.
+    let [mut end, kept, mut carried] = forces[0].columns;
+    let mut ring = kept;
+    if !nodes.is_closed {
+        add(kept, &nodes.ring[..T::LANES], sums);
+    }
+    for (forces, from) in forces.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
+        let [on_end, on_ring, next] = forces.columns;
+        let on_ring = carried + on_ring;
+        end += on_end;
+        ring += on_ring;
+        carried = next;
+        add(on_ring, from, sums);
+    }
+    add(if nodes.is_closed { kept + carried } else { carried }, nodes.last, sums);
+    add(end, nodes.end, sums);
+    add(-(ring + carried + end), nodes.origin, sums);
+}
+
+/// Writes rows, slot by slot, and adds up forces.
+pub(super) struct Keep<'a, T: Scalar, S: Simd, R> {
+    pub(super) record: &'a R,
+    pub(super) values: &'a mut [T],
+    /// The slot that `values` begin with, and how many there are of each.
+    pub(super) first: usize,
+    pub(super) block: usize,
+    pub(super) sums: &'a mut PatchRows<T>,
+    /// The tetrahedra of a batch: its first slot, and how many there are.
+    pub(super) batch: (usize, usize),
+    pub(super) places: [Deformed<T::Lanes<S>>; LONGEST],
+    pub(super) simd: S,
+}
+
+impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
+    #[inline(always)]
+    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+        self.batch = (slot - place, place + 1);
+        self.places[place].edges = edges[0];
+        self.places[place].f = self.record.deformation(simd, slot, &edges[0]);
+    }
+
+    #[inline(always)]
+    fn end(&mut self, nodes: &BatchNodes<'_>) {
+        let (slot, length) = self.batch;
+        for place in &mut self.places[..length] {
+            place.r = self.record.rotation::<S>(&place.f);
         }
-        for (forces, from) in self.forces.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
-            let [on_end, on_ring, next] = forces.columns;
-            let on_ring = carried + on_ring;
-            end += on_end;
-            ring += on_ring;
-            carried = next;
-            add(on_ring, from, self.sums);
+        let mut forces = [self.places[0].edges; LONGEST];
+        let values = self.values[(slot - self.first) * self.block..].chunks_exact_mut(self.block);
+        for (number, ((forces, place), values)) in forces.iter_mut().zip(&self.places[..length]).zip(values).enumerate()
+        {
+            *forces = self.record.record(self.simd, slot + number, place, values);
         }
-        add(if nodes.is_closed { kept + carried } else { carried }, nodes.last, self.sums);
-        add(end, nodes.end, self.sums);
-        add(-(ring + carried + end), nodes.origin, self.sums);
+        add_up(&forces, nodes, self.sums);
     }
 }
 
