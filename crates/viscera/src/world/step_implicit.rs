@@ -168,9 +168,9 @@ struct Parts {
 }
 
 impl Parts {
-    /// So many, and those divided.
+    /// So many, and those divided, into more than 64 each only up to as many as a step of one part would have: fast tools ask for 256.
     fn new(parts: u32, Division { halvings, doublings }: Division) -> Self {
-        Self { equal: parts << halvings, doublings }
+        Self { equal: (parts << halvings.min(6)).max(1 << halvings), doublings }
     }
 
     fn count(self) -> u32 {
@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn parts_fill_a_step_whole() {
         for division in DIVISIONS {
-            for parts in [1, 3] {
+            for parts in [1, 3, 256] {
                 let parts = Parts::new(parts, division);
                 assert_eq!((parts.start(0), parts.end(parts.count() - 1)), (0.0, 1.0));
                 for part in 0..parts.count() {
