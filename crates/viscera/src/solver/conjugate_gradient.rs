@@ -128,7 +128,7 @@ impl<T: Scalar> ConjugateGradient<T> {
     ) -> SolveReport {
         let executor = problem.executor;
         self.history.clear();
-        self.note_filtered(problem.filters);
+        self.list_filtered(problem.filters);
         let (mut size, scale) = self.start(matrix, preconditioner, problem, x);
         let goal = stop.relative() * scale;
         self.note(size.squared_norm, scale);
@@ -207,7 +207,7 @@ impl<T: Scalar> ConjugateGradient<T> {
         }
     }
 
-    fn note_filtered(&mut self, filters: &[Filter<T>]) {
+    fn list_filtered(&mut self, filters: &[Filter<T>]) {
         self.held.clear();
         self.sliding.clear();
         for (node, filter) in filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {

@@ -6,6 +6,7 @@ mod error;
 mod forces;
 mod grip;
 mod observables;
+mod parts;
 mod snapshot;
 mod statics;
 mod step;

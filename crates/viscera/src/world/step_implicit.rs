@@ -1,3 +1,4 @@
+use super::parts::{DIVISIONS, PATIENT, Parts};
 use super::step::{MOST_PARTS, Motion, most_deformed_cell, moving};
 use super::{StepError, World};
 use crate::dynamics::Drive;
@@ -6,25 +7,6 @@ use crate::dynamics::tied::Together;
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3};
 use crate::stage::{Stage, Stages};
-
-/// How a step is made again that is not solved, or that throws tissue across a hump: in twice as many parts up to 64, and where those do not do
-/// either, with shorter ones to begin with. Tissue that is let go from far off balance is thrown within the first of them, and its parts need be short
-/// only until it has turned: free, integrated at the nodes and stretched 1010 times, it needed the 512th part of 20 ms there, and no more than the 16th after.
-const DIVISIONS: [Division; 11] = [
-    Division::equal(0),
-    Division::equal(1),
-    Division::equal(2),
-    Division::equal(3),
-    Division::equal(4),
-    Division::equal(5),
-    Division::equal(6),
-    Division { halvings: 6, doublings: 3 },
-    Division { halvings: 6, doublings: 6 },
-    Division { halvings: 6, doublings: 9 },
-    Division { halvings: 9, doublings: 6 },
-];
-/// From this one on solvers do all that they can.
-const LAST: usize = 6;
 
 /// A body whose step is not to be taken, why, and what its solver did.
 type Refusal = (usize, Refused, ImplicitReport);
@@ -45,7 +27,7 @@ impl<T: Scalar> World<T> {
         loop {
             let parts = stages.run(Stage::Instruments, || self.approach_in_time(span));
             let parts = Parts::new(parts, DIVISIONS[retries]);
-            let (report, refused) = self.advance_implicitly(span, settings, (parts, retries >= LAST), stages);
+            let (report, refused) = self.advance_implicitly(span, settings, (parts, retries >= PATIENT), stages);
             let within = stages.run(Stage::Guard, || self.bodies.iter().all(|body| body.is_within_bounds()));
             if within && refused.is_none() {
                 let (substeps, retries) = (parts.count(), retries as u32);
@@ -61,13 +43,13 @@ impl<T: Scalar> World<T> {
         }
     }
 
-    /// Moves all bodies by the parts of the step, in one of the last attempts or one before; gives what the solvers did, and the first body whose
+    /// Moves all bodies by the parts of the step, patiently or not; gives what the solvers did, and the first body whose
     /// step is not to be taken.
     fn advance_implicitly(
         &mut self,
         span: &Span,
         settings: &Implicit,
-        (parts, is_last): (Parts, bool),
+        (parts, is_patient): (Parts, bool),
         stages: Stages,
     ) -> (ImplicitReport, Option<Refusal>) {
         let gravity = Vec3::from(self.config.gravity).cast();
@@ -88,8 +70,8 @@ impl<T: Scalar> World<T> {
                     continue;
                 }
                 let all = (&mut self.bodies[..], &mut self.implicit[..]);
-                let (own, why) =
-                    stages.run(Stage::Newton, || implicit::advance(all, together, settings, interval, is_last, stages));
+                let (own, why) = stages
+                    .run(Stage::Newton, || implicit::advance(all, together, settings, interval, is_patient, stages));
                 refused = refused.or(why.map(|why| (number, why, own)));
                 report = report.worst(own);
             }
@@ -139,82 +121,6 @@ impl<T: Scalar> World<T> {
                     _ => "backward Euler",
                 };
                 StepError::GainedEnergy { time, body: name, law, cell, stretch, advice }
-            }
-        }
-    }
-}
-
-/// How a step is divided.
-#[derive(Clone, Copy)]
-struct Division {
-    /// How often into halves.
-    halvings: u32,
-    /// The first part again into so many and one, of which each is as long as all before it.
-    doublings: u32,
-}
-
-impl Division {
-    const fn equal(halvings: u32) -> Self {
-        Self { halvings, doublings: 0 }
-    }
-}
-
-/// The parts of a step.
-#[derive(Clone, Copy)]
-struct Parts {
-    /// Equal ones.
-    equal: u32,
-    doublings: u32,
-}
-
-impl Parts {
-    /// So many, and those divided, into more than 64 each only up to as many as a step of one part would have: fast tools ask for 256.
-    fn new(parts: u32, Division { halvings, doublings }: Division) -> Self {
-        Self { equal: (parts << halvings.min(6)).max(1 << halvings), doublings }
-    }
-
-    fn count(self) -> u32 {
-        self.equal + self.doublings
-    }
-
-    /// The share of the step that is over at the beginning of a part.
-    fn start(self, part: u32) -> f64 {
-        if part == 0 { 0.0 } else { self.end(part - 1) }
-    }
-
-    /// The same at its end, in powers of ½ of an equal part up to the first.
-    fn end(self, part: u32) -> f64 {
-        let equal = f64::from(self.equal);
-        if part < self.doublings {
-            0.5_f64.powi((self.doublings - part) as i32) / equal
-        } else {
-            f64::from(part - self.doublings + 1) / equal
-        }
-    }
-
-    /// Length of a part [s] in a step of `step` [s].
-    fn length(self, part: u32, step: f64) -> f64 {
-        // The first and the second are of one length.
-        let halves = if part > self.doublings { 0 } else { self.doublings - part.saturating_sub(1) };
-        step / f64::from(self.equal) * 0.5_f64.powi(halves as i32)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_fill_a_step_whole() {
-        for division in DIVISIONS {
-            for parts in [1, 3, 256] {
-                let parts = Parts::new(parts, division);
-                assert_eq!((parts.start(0), parts.end(parts.count() - 1)), (0.0, 1.0));
-                for part in 0..parts.count() {
-                    let length = parts.end(part) - parts.start(part);
-                    let error = (parts.length(part, 2.0) - 2.0 * length).abs();
-                    assert!(length > 0.0 && error < 1e-15, "part {part} of {}: {length}", parts.count());
-                }
             }
         }
     }

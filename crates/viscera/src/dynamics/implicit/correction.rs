@@ -90,7 +90,7 @@ impl<T: Scalar> Step<'_, T> {
 
     /// Solves for the correction of δ, which holds the guess.
     pub(super) fn solve(&mut self) -> Solve {
-        let stop = self.settings.stop(self.is_last && self.has_potential());
+        let stop = self.settings.stop(self.is_patient && self.has_potential());
         let executor = self.body.scratch.executor.clone();
         let memory = &mut *self.memory;
         let rhs = (NodeBlocks(&mut memory.rhs), ReadBlocks(&memory.lack));

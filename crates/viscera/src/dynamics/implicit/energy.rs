@@ -60,10 +60,10 @@ impl<T: Scalar> Group<'_, T> {
         let is_bounded = self.settings.scheme == Scheme::BackwardEuler;
         let is_suspect = self.went_astray || self.stands_in || (!is_bounded && self.imbalance > IMBALANCE);
         let is_linearised = self.settings.newton == Newton::Linearised || self.stands_in;
-        let (is_last, is_first) = (self.is_last && !self.stands_in, self.interval.is_first);
+        let (is_patient, is_first) = (self.is_patient && !self.stands_in, self.interval.is_first);
         let mut step = self.member(0);
         match is_linearised {
-            true if is_last => step.has_potential() && step.has_gained_since(is_first),
+            true if is_patient => step.has_potential() && step.has_gained_since(is_first),
             true => is_suspect && step.has_gained(GAIN_LINEARISED),
             false => step.has_gained(if is_bounded && step.has_potential() { GAIN } else { GAIN_UNBOUNDED }),
         }

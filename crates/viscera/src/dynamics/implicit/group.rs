@@ -45,7 +45,7 @@ pub(crate) fn advance<T: Scalar>(
     together: Together<'_, T>,
     settings: &Implicit,
     interval: Interval<'_, T>,
-    is_last: bool,
+    is_patient: bool,
     stages: Stages,
 ) -> (ImplicitReport, Option<Refused>) {
     let numbers = settings.scheme.numbers(false);
@@ -56,11 +56,11 @@ pub(crate) fn advance<T: Scalar>(
         settings,
         numbers,
         interval,
-        is_last,
+        is_patient,
         stages,
         went_astray: false,
         stands_in: false,
-        may_climb: !is_last,
+        may_climb: !is_patient,
         imbalance: 0.0,
     };
     group.agree_on_past();
@@ -87,8 +87,8 @@ pub(super) struct Group<'a, T: Scalar> {
     pub(super) settings: &'a Implicit,
     pub(super) numbers: Numbers,
     pub(super) interval: Interval<'a, T>,
-    /// Whether this is one of the last attempts at this step.
-    pub(super) is_last: bool,
+    /// Whether this is one of the last attempts at this step, which take more iterations and more of what is found.
+    pub(super) is_patient: bool,
     pub(super) stages: Stages<'a>,
     /// Whether a linearised step had to be solved in full instead.
     pub(super) went_astray: bool,
@@ -128,7 +128,7 @@ impl<T: Scalar> Group<'_, T> {
             from,
             dt,
             drive,
-            is_last: self.is_last,
+            is_patient: self.is_patient,
             stages: self.stages,
         }
     }
@@ -180,8 +180,8 @@ impl<T: Scalar> Group<'_, T> {
     fn solve(&mut self) -> ImplicitReport {
         let newton = self.settings.newton;
         let Newton::Full { relative, .. } = newton else { return self.solve_linearised() };
-        let report = self.solve_in_full(relative, newton.at_most(self.is_last));
-        if !self.is_last {
+        let report = self.solve_in_full(relative, newton.at_most(self.is_patient));
+        if !self.is_patient {
             return report;
         }
         if self.any(|step| !step.has_potential()) {

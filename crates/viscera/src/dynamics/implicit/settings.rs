@@ -68,10 +68,10 @@ pub enum Preconditioning {
 
 impl Newton {
     /// The most iterations, in one of the last attempts at a step or one before.
-    pub(super) fn at_most(self, is_last: bool) -> u32 {
+    pub(super) fn at_most(self, is_patient: bool) -> u32 {
         match self {
             Self::Linearised => INSTEAD.1,
-            Self::Full { at_most, .. } if is_last => PATIENCE * at_most,
+            Self::Full { at_most, .. } if is_patient => PATIENCE * at_most,
             Self::Full { at_most, .. } => at_most,
         }
     }

@@ -17,8 +17,8 @@ pub(super) struct Step<'a, T: Scalar> {
     pub(super) from: f64,
     pub(super) dt: f64,
     pub(super) drive: &'a Drive<'a, T>,
-    /// Whether this is one of the last attempts at it.
-    pub(super) is_last: bool,
+    /// Whether this is one of the last attempts at it, which take more iterations.
+    pub(super) is_patient: bool,
     pub(super) stages: Stages<'a>,
 }
 

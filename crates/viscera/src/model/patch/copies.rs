@@ -45,20 +45,14 @@ impl Copies {
         self.firsts[node as usize] as usize == row
     }
 
-    /// Hands each node to `first` with the row of its first copy, if it has one; then to `other` with that of each other.
-    pub(super) fn each<V: Send>(
-        &self,
-        executor: &Executor,
-        out: &mut [V],
-        first: &(impl Fn(&mut V, Option<usize>) + Sync),
-        other: &(impl Fn(&mut V, usize) + Sync),
-    ) {
+    /// Hands each node to `add` with the row of each of its copies.
+    pub(super) fn each<V: Send>(&self, executor: &Executor, out: &mut [V], add: &(impl Fn(&mut V, usize) + Sync)) {
         executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
-            self.each_of_block(block, out, first, other);
+            self.each_of_block(block, out, |sum, row| row.into_iter().for_each(|row| add(sum, row)), add);
         });
     }
 
-    /// The same for a block of nodes.
+    /// Hands each node of a block to `first` with the row of its first copy, if it has one; then to `other` with that of each other.
     #[inline(always)]
     pub(super) fn each_of_block<V>(
         &self,

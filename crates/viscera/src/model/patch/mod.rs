@@ -129,7 +129,7 @@ impl Patches {
     /// Adds to each node of `out` the rows of its copies.
     pub(crate) fn add_up<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
         let add = |sum: &mut Vec3<T>, row| *sum += force(rows, row);
-        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
+        self.copies.each(executor, out, &add);
     }
 
     /// Writes to each node of `out` the sum of the rows of its copies.
@@ -152,7 +152,7 @@ impl Patches {
             let [x, y, z] = force(rows, row).to_array();
             *sum = [sum[0] + x, sum[1] + y, sum[2] + z, sum[3]];
         };
-        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
+        self.copies.each(executor, out, &add);
     }
 
     /// Adds to each node of `out` the symmetric blocks of its copies: xx, yy, zz in one row, xy, xz, yz in the next.
@@ -161,7 +161,7 @@ impl Patches {
             let ([xx, yy, zz], [xy, xz, yz]) = (force(rows, 2 * row).to_array(), force(rows, 2 * row + 1).to_array());
             *sum += Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz });
         };
-        self.copies.each(executor, out, &|sum, row| row.into_iter().for_each(|row| add(sum, row)), &add);
+        self.copies.each(executor, out, &add);
     }
 }
 
