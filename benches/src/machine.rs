@@ -1,8 +1,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use fearless_simd::{Simd, dispatch};
-use viscera::math::{Lanes, Real, Scalar, dispatch_level};
+use viscera::math::{Lanes, MAX_LANES, Part, Real, Scalar, Simd, dispatch, dispatch_level};
 
 /// What one thread of this machine can do at best.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +27,7 @@ impl Machine {
 
     /// The peak in the precision of `T` [FLOP/s].
     pub fn flops<T: Scalar>(&self) -> f64 {
-        if T::LANES == 8 { self.flops_f32 } else { self.flops_f64 }
+        if size_of::<T>() == 4 { self.flops_f32 } else { self.flops_f64 }
     }
 }
 
@@ -49,7 +48,12 @@ const ROUNDS: usize = 2_000_000;
 
 fn peak<T: Scalar>() -> f64 {
     let seconds = best_of(100, || seconds_of(|| multiply_and_add::<T>()));
-    (2 * CHAINS * ROUNDS * T::LANES) as f64 / seconds
+    (2 * CHAINS * ROUNDS * dispatch!(dispatch_level(), simd => lanes_of::<T, _>(simd))) as f64 / seconds
+}
+
+/// How many numbers a register holds, or two of them where they are narrow.
+fn lanes_of<T: Scalar, S: Simd>(_simd: S) -> usize {
+    T::Lanes::<S>::COUNT
 }
 
 fn multiply_and_add<T: Scalar>() {
@@ -67,8 +71,8 @@ fn multiply_and_add_with<T: Scalar, S: Simd>(simd: S) {
         }
     }
     let sum = chains.into_iter().reduce(|a, b| a + b).unwrap_or(factor);
-    let mut values = [T::ZERO; 8];
-    sum.store(&mut values);
+    let mut values = [T::ZERO; MAX_LANES];
+    sum.store(Part::first(simd), &mut values);
     black_box(values);
 }
 

@@ -10,14 +10,12 @@
 //!
 //! Source: Picinbono, Delingette, Ayache, INRIA RR-4028 (2000), eq. 11, with the sign of γ corrected.
 
-use fearless_simd::dispatch;
-
 use super::Drive;
 use super::hold::Held;
 use crate::body::{BodyState, Driven, NodeMotion, SimulatedBody, find_forces, free_directions};
 use crate::contact::{Contacts, Nodes};
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::model::Scratch;
 use crate::solver::Filter;
 use crate::stage::{Stage, Stages};

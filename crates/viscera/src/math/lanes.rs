@@ -1,20 +1,55 @@
-use std::cell::Cell;
+//! Batches of numbers, in registers as wide as the processor has them.
+//!
+//! Element tables have [`Scalar::LANES`] rows to a block, on every processor: the registers of AVX-512 hold them at once, those of others half of
+//! them, and a loop goes through a block part by part. Sums on nodes are made by halves on all of them, so that their bits do not
+//! depend on the width.
+
 use std::cmp::PartialOrd;
 use std::fmt::{Display, LowerExp};
-use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, f32x8, f64x4};
+use fearless_simd::{f32x8, f32x16, f64x4, f64x8};
 
 use super::Real;
-use super::rows::{add_doubles, add_singles, gather_doubles, gather_singles};
+use super::rows::{add_doubles, add_singles, gather_doubles, gather_singles, gather_wide_doubles, gather_wide_singles};
+
+/// An instruction set, and the batches that its registers hold.
+pub trait Simd: fearless_simd::Simd {
+    /// A batch of `f32`.
+    type Singles: Lanes<f32, Self>;
+    /// A batch of `f64`.
+    type Doubles: Lanes<f64, Self>;
+}
+
+macro_rules! impl_simd {
+    ($token:ty, $singles:ident, $doubles:ident) => {
+        impl Simd for $token {
+            type Singles = $singles<Self>;
+            type Doubles = $doubles<Self>;
+        }
+    };
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl_simd!(fearless_simd::x86::Sse2, f32x8, f64x4);
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl_simd!(fearless_simd::x86::Avx2, f32x8, f64x4);
+// Wide ones where registers did not suffice cost up to a third (hexahedra, AVX2).
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl_simd!(fearless_simd::x86::Avx512, f32x16, f64x8);
+#[cfg(target_arch = "aarch64")]
+impl_simd!(fearless_simd::aarch64::Neon, f32x8, f64x4);
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+impl_simd!(fearless_simd::wasm32::WasmSimd128, f32x8, f64x4);
 
 /// A floating-point number that a world can be simulated in: `f32` for play, `f64` for statics and validation.
 pub trait Scalar: Real<Mask = bool> + PartialOrd + Default + Display + LowerExp + 'static {
-    /// A batch of [`Scalar::LANES`] values in one or more SIMD registers.
+    /// A batch as wide as the registers of `S`: a [block](Scalar::LANES), or half of one.
     type Lanes<S: Simd>: Lanes<Self, S>;
+    /// Half a block.
+    type Half<S: Simd>: HalfLanes<Self, S>;
 
-    /// How many values a batch holds; the layout of element tables depends on it.
+    /// How many rows a block has; the layout of element tables depends on it.
     const LANES: usize;
     /// 0.
     const ZERO: Self;
@@ -33,28 +68,88 @@ pub trait Scalar: Real<Mask = bool> + PartialOrd + Default + Display + LowerExp 
     fn is_finite(self) -> bool;
 }
 
+/// The part of a block that a batch stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<S> {
+    /// The instruction set.
+    pub simd: S,
+    number: usize,
+}
+
+impl<S: Simd> Part<S> {
+    /// The parts of a block, one after the other: one, where registers hold it whole.
+    #[inline(always)]
+    pub fn all<T: Scalar>(simd: S) -> impl Iterator<Item = Self> {
+        (0..T::LANES / T::Lanes::<S>::COUNT).map(move |number| Self { simd, number })
+    }
+
+    /// The first part of a block.
+    #[inline(always)]
+    pub fn first(simd: S) -> Self {
+        Self { simd, number: 0 }
+    }
+
+    /// The halves of a block that are in this part, one after the other: it may be one itself.
+    #[inline(always)]
+    pub fn halves<T: Scalar>(self) -> impl Iterator<Item = Self> {
+        let count = T::Lanes::<S>::COUNT / T::Half::<S>::COUNT;
+        (0..count).map(move |half| Self { simd: self.simd, number: self.number * count + half })
+    }
+
+    /// The number of a half within its part: where the part is a half itself, the compiler knows it.
+    #[inline(always)]
+    pub(crate) fn within<T: Scalar>(self) -> Self {
+        Self { simd: self.simd, number: self.number % (T::Lanes::<S>::COUNT / T::Half::<S>::COUNT) }
+    }
+
+    /// Whether it is the first of its block.
+    #[inline(always)]
+    pub(crate) fn is_first(self) -> bool {
+        self.number == 0
+    }
+
+    /// Where its lanes begin in a block; by a remainder, from which the compiler sees that they lie within.
+    #[inline(always)]
+    pub(crate) fn start<T: Scalar, L: Lanes<T, S>>(self) -> usize {
+        self.number % (T::LANES / L::COUNT) * L::COUNT
+    }
+
+    /// What lanes of the kind `L` have of the numbers of a block, one for each of its rows.
+    #[inline(always)]
+    pub fn of<T: Scalar, L: Lanes<T, S>, V>(self, column: &[V]) -> &[V] {
+        &column[self.start::<T, L>()..][..L::COUNT]
+    }
+}
+
 /// SIMD lanes of the scalar `T`, for the instruction set that the token `S` stands for.
 pub trait Lanes<T: Scalar, S: Simd>: Real {
-    /// Reads the first [`Scalar::LANES`] values.
-    fn load(simd: S, values: &[T]) -> Self;
-    /// Writes the first [`Scalar::LANES`] values.
-    fn store(self, values: &mut [T]);
+    /// How many there are: [`Scalar::LANES`], or half as many.
+    const COUNT: usize;
+    /// Reads its part of a column of a block.
+    fn load(part: Part<S>, column: &[T]) -> Self;
+    /// Writes its part of a column of a block.
+    fn store(self, part: Part<S>, column: &mut [T]);
     /// The same value in every lane.
     fn splat(simd: S, value: T) -> Self;
     /// Reads four numbers per lane, lane `i` from `rows[nodes[i]]`, and gives them column by column.
     ///
-    /// Rows are loaded whole and transposed in registers: eight single loads into an array, read back as one vector,
+    /// Rows are loaded whole and transposed in registers: single loads into an array, read back as one vector,
     /// stall on store forwarding (three times slower, measured).
     fn gather(simd: S, rows: &[[T; 4]], nodes: &[u32]) -> [Self; 4];
+}
+
+/// Half a block of lanes.
+pub trait HalfLanes<T: Scalar, S: Simd>: Lanes<T, S> {
     /// Adds three numbers per lane, lane `i` to the first three of `rows[nodes[i]]`, lane after lane: lanes may name the
     /// same row.
     fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[T; 4]]);
 }
 
-macro_rules! impl_lanes {
-    ($scalar:ty, $lanes:ident, $count:expr, $name:expr, $gather:path, $scatter_add:path) => {
+macro_rules! impl_scalar {
+    ($scalar:ty, $lanes:ident, $half:ident, $count:expr, $name:expr) => {
         impl Scalar for $scalar {
-            type Lanes<S: Simd> = $lanes<S>;
+            type Lanes<S: Simd> = S::$lanes;
+            type Half<S: Simd> = $half<S>;
 
             const LANES: usize = $count;
             const ZERO: Self = 0.0;
@@ -75,15 +170,24 @@ macro_rules! impl_lanes {
                 <$scalar>::is_finite(self)
             }
         }
+    };
+}
 
+impl_scalar!(f32, Singles, f32x8, 16, "f32");
+impl_scalar!(f64, Doubles, f64x4, 8, "f64");
+
+macro_rules! impl_lanes {
+    ($scalar:ty, $lanes:ident, $count:expr, $gather:path) => {
         impl<S: Simd> Lanes<$scalar, S> for $lanes<S> {
+            const COUNT: usize = $count;
+
             #[inline(always)]
-            fn load(simd: S, values: &[$scalar]) -> Self {
-                Self::from_slice(simd, &values[..$count])
+            fn load(part: Part<S>, column: &[$scalar]) -> Self {
+                Self::from_slice(part.simd, part.of::<$scalar, Self, _>(column))
             }
             #[inline(always)]
-            fn store(self, values: &mut [$scalar]) {
-                self.store_slice(&mut values[..$count]);
+            fn store(self, part: Part<S>, column: &mut [$scalar]) {
+                self.store_slice(&mut column[part.start::<$scalar, Self>()..][..$count]);
             }
             #[inline(always)]
             fn splat(simd: S, value: $scalar) -> Self {
@@ -92,10 +196,6 @@ macro_rules! impl_lanes {
             #[inline(always)]
             fn gather(simd: S, rows: &[[$scalar; 4]], nodes: &[u32]) -> [Self; 4] {
                 $gather(simd, rows, nodes)
-            }
-            #[inline(always)]
-            fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[$scalar; 4]]) {
-                $scatter_add(columns, nodes, rows);
             }
         }
 
@@ -160,49 +260,24 @@ macro_rules! impl_lanes {
     };
 }
 
-impl_lanes!(f32, f32x8, 8, "f32", gather_singles, add_singles);
-impl_lanes!(f64, f64x4, 4, "f64", gather_doubles, add_doubles);
+impl_lanes!(f32, f32x8, 8, gather_singles);
+impl_lanes!(f32, f32x16, 16, gather_wide_singles);
+impl_lanes!(f64, f64x4, 4, gather_doubles);
+impl_lanes!(f64, f64x8, 8, gather_wide_doubles);
 
-thread_local! {
-    static ASKED: Cell<Option<Level>> = const { Cell::new(None) };
-}
-
-/// The instruction set of the kernels: the best that the processor has on which the program runs, found once.
-pub fn dispatch_level() -> Level {
-    static LEVEL: OnceLock<Level> = OnceLock::new();
-    ASKED.get().unwrap_or_else(|| *LEVEL.get_or_init(Level::new))
-}
-
-/// Does `work` with the kernels of another instruction set, on this thread alone, to hold them against each other.
-pub fn with_level<R>(level: Level, work: impl FnOnce() -> R) -> R {
-    struct PutBack(Option<Level>);
-    impl Drop for PutBack {
-        fn drop(&mut self) {
-            ASKED.set(self.0);
-        }
+impl<S: Simd> HalfLanes<f32, S> for f32x8<S> {
+    #[inline(always)]
+    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
+        add_singles(columns, nodes, rows);
     }
-    let _put_back = PutBack(ASKED.replace(Some(level)));
-    work()
 }
 
-/// The instruction set that every processor of the target has, for kernels that are not worth compiling for each set there is:
-/// tangents that are assembled, once for many products.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) fn baseline() -> impl Simd {
-    Level::baseline().as_sse2().expect("SSE2 is part of the target")
+impl<S: Simd> HalfLanes<f64, S> for f64x4<S> {
+    #[inline(always)]
+    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
+        add_doubles(columns, nodes, rows);
+    }
 }
 
-/// The same for ARM.
-#[cfg(target_arch = "aarch64")]
-pub(crate) fn baseline() -> impl Simd {
-    Level::baseline().as_neon().expect("NEON is part of the target")
-}
-
-/// The same for WebAssembly.
-#[cfg(target_arch = "wasm32")]
-pub(crate) fn baseline() -> impl Simd {
-    Level::baseline().as_wasm_simd128().expect("simd128 is part of the target")
-}
-
-/// The widest batch of any scalar.
-pub const MAX_LANES: usize = 8;
+/// Rows of the longest block of any scalar.
+pub const MAX_LANES: usize = 16;

@@ -4,7 +4,7 @@
 //! where a shuffle takes one cycle, and takes seven of them for eight lanes in place of eleven.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x4, f32x8, f64x2, f64x4};
+use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x2, f64x4, f64x8};
 
 /// Columns of eight rows.
 #[inline(always)]
@@ -18,6 +18,21 @@ pub(super) fn gather_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32])
         zip_high_singles(xy_even, xy_odd),
         zip_low_singles(zw_even, zw_odd),
         zip_high_singles(zw_even, zw_odd),
+    ]
+}
+
+/// Columns of sixteen rows.
+#[inline(always)]
+pub(super) fn gather_wide_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> [f32x16<S>; 4] {
+    let (a, b) = (four_singles(simd, rows, nodes, 0), four_singles(simd, rows, nodes, 1));
+    let (c, d) = (four_singles(simd, rows, nodes, 2), four_singles(simd, rows, nodes, 3));
+    let (xy_even, xy_odd) = (zip_low_wide(a, c), zip_low_wide(b, d));
+    let (zw_even, zw_odd) = (zip_high_wide(a, c), zip_high_wide(b, d));
+    [
+        zip_low_wide(xy_even, xy_odd),
+        zip_high_wide(xy_even, xy_odd),
+        zip_low_wide(zw_even, zw_odd),
+        zip_high_wide(zw_even, zw_odd),
     ]
 }
 
@@ -46,6 +61,14 @@ pub(super) fn gather_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32])
     ]
 }
 
+/// Columns of eight rows.
+#[inline(always)]
+pub(super) fn gather_wide_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32]) -> [f64x8<S>; 4] {
+    let [a, b, c, d] = gather_doubles(simd, rows, nodes);
+    let [e, f, g, h] = gather_doubles(simd, rows, &nodes[4..]);
+    [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
+}
+
 /// Adds three columns to the first three numbers of four rows, row after row: they may be the same.
 #[inline(always)]
 pub(super) fn add_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
@@ -59,6 +82,12 @@ pub(super) fn add_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], rows
 fn two_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32], lane: usize) -> f32x8<S> {
     let first = f32x4::from_slice(simd, &rows[nodes[lane] as usize]);
     first.combine(f32x4::from_slice(simd, &rows[nodes[lane + 4] as usize]))
+}
+
+/// The rows of a lane and of those four, eight and twelve behind it.
+#[inline(always)]
+fn four_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32], lane: usize) -> f32x16<S> {
+    two_singles(simd, rows, nodes, lane).combine(two_singles(simd, rows, nodes, lane + 8))
 }
 
 #[inline(always)]
@@ -122,6 +151,36 @@ zip_within_halves!(zip_low_singles, zip_low, f32x8, __m256, _mm256_unpacklo_ps, 
 zip_within_halves!(zip_high_singles, zip_high, f32x8, __m256, _mm256_unpackhi_ps, unpack_high_singles);
 zip_within_halves!(zip_low_doubles, zip_low, f64x4, __m256d, _mm256_unpacklo_pd, unpack_low_doubles);
 zip_within_halves!(zip_high_doubles, zip_high, f64x4, __m256d, _mm256_unpackhi_pd, unpack_high_doubles);
+
+/// The same of sixteen numbers, within each 128 bits.
+macro_rules! zip_within_quarters {
+    ($name:ident, $of_halves:ident, $unpack:ident, $x86:ident) => {
+        #[cfg(target_arch = "x86_64")]
+        fearless_simd::kernel!(
+            #[inline]
+            fn $x86(
+                avx512: Avx512,
+                a: std::arch::x86_64::__m512,
+                b: std::arch::x86_64::__m512,
+            ) -> std::arch::x86_64::__m512 {
+                std::arch::x86_64::$unpack(a, b)
+            }
+        );
+
+        #[inline(always)]
+        fn $name<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
+            #[cfg(target_arch = "x86_64")]
+            if let Some(avx512) = a.token().level().as_avx512() {
+                return $x86(avx512, a.into(), b.into()).simd_into(a.token());
+            }
+            let ((a_low, a_high), (b_low, b_high)) = (a.split(), b.split());
+            $of_halves(a_low, b_low).combine($of_halves(a_high, b_high))
+        }
+    };
+}
+
+zip_within_quarters!(zip_low_wide, zip_low_singles, _mm512_unpacklo_ps, unpack_low_wide);
+zip_within_quarters!(zip_high_wide, zip_high_singles, _mm512_unpackhi_ps, unpack_high_wide);
 
 #[cfg(test)]
 mod tests {

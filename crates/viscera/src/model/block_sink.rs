@@ -1,8 +1,8 @@
 //! Where models put the 3×3 blocks of their tangent when it is assembled.
 
-use fearless_simd::Simd;
+use std::ops::Range;
 
-use crate::math::{Lanes, MAX_LANES, Mat3, Scalar, Vec3};
+use crate::math::{Lanes, MAX_LANES, Mat3, Part, Scalar, Simd, Vec3};
 use crate::solver::BlockSink;
 
 /// Takes the blocks of the diagonal, one for each node, and drops the others.
@@ -44,9 +44,10 @@ pub(crate) fn add_tet_blocks<T: Scalar>(
 }
 
 /// Gives a batch's column of blocks to `sink`: `columns[axis][p]` is the force on corner p for a unit displacement of
-/// corner `corner` along `axis`. The batch holds `elements` elements, the lanes beyond are padding.
+/// corner `corner` along `axis`. The block holds `elements` elements, the lanes beyond are padding.
 #[inline(always)]
 pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
+    part: Part<S>,
     columns: &[[Vec3<T::Lanes<S>>; CORNERS]; 3],
     nodes: &[u32],
     corner: usize,
@@ -56,7 +57,7 @@ pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
     let [x, y, z] = columns;
     for p in 0..CORNERS {
         if p == corner || !sink.keeps_diagonal_only() {
-            add_block::<T, S>(&Mat3::from_columns(x[p], y[p], z[p]), nodes, [p, corner], elements, sink);
+            add_block::<T, S>(part, &Mat3::from_columns(x[p], y[p], z[p]), nodes, [p, corner], elements, sink);
         }
     }
 }
@@ -64,6 +65,7 @@ pub(crate) fn add_block_column<T: Scalar, S: Simd, const CORNERS: usize>(
 /// Gives one block of each element of a batch to `sink`, that of the two `corners`.
 #[inline(always)]
 pub(crate) fn add_block<T: Scalar, S: Simd>(
+    part: Part<S>,
     block: &Mat3<T::Lanes<S>>,
     nodes: &[u32],
     corners: [usize; 2],
@@ -73,23 +75,24 @@ pub(crate) fn add_block<T: Scalar, S: Simd>(
     let mut numbers = [[[T::ZERO; MAX_LANES]; 3]; 3];
     for (stored, column) in numbers.iter_mut().zip(block.columns) {
         for (stored, component) in stored.iter_mut().zip(column.to_array()) {
-            component.store(stored);
+            component.store(part, stored);
         }
     }
     let [rows, columns] = corners.map(|corner| &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
-    send(&numbers, rows, columns, elements.min(T::LANES), sink);
+    let start = part.start::<T, T::Lanes<S>>();
+    send(&numbers, rows, columns, start..elements.min(start + T::Lanes::<S>::COUNT), sink);
 }
 
-/// Gives one block of each of the first `elements` lanes to `sink`. Not inlined: the same for every instruction set.
+/// Gives one block of each of these lanes to `sink`. Not inlined: the same for every instruction set.
 #[inline(never)]
 fn send<T: Scalar>(
     numbers: &[[[T; MAX_LANES]; 3]; 3],
     rows: &[u32],
     columns: &[u32],
-    elements: usize,
+    lanes: Range<usize>,
     sink: &mut dyn BlockSink<T>,
 ) {
-    for lane in 0..elements {
+    for lane in lanes {
         let [a, b, c] = numbers.map(|column| Vec3::from(column.map(|component| component[lane])));
         sink.add(rows[lane], columns[lane], Mat3::from_columns(a, b, c));
     }

@@ -4,15 +4,13 @@
 use std::any::Any;
 use std::marker::PhantomData;
 
-use fearless_simd::Simd;
-
 use super::block_table::BlockTable;
 use super::frequency::{FrequencyBound, squared_frequency_at_rest};
 use super::patch::Measure;
 use super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop, TetMeasure};
 use super::{ModelError, Patches, Scratch};
 use crate::material::LawFamily;
-use crate::math::{Mat3, Real, Scalar, Vec3};
+use crate::math::{Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::mesh::TetMesh;
 
 /// A kernel that knows how stiff its law is.
@@ -89,9 +87,9 @@ struct Along<'a, T: Scalar, K> {
 
 impl<T: Scalar, K: BoundedKernel> Measure<T> for Along<'_, T, K> {
     #[inline(always)]
-    fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
-        let constants = self.tets.load(simd, slot);
-        self.bound.column(simd, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], edges)
+    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
+        let constants = self.tets.load(part, slot);
+        self.bound.column(part, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], edges)
     }
 }
 

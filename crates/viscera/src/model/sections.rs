@@ -12,7 +12,7 @@ use crate::executor::{Divide, Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
 
 /// Batches in a section. Fewer, and copies at the seams weigh; more, and ten thousand cells are too few sections for two threads.
-const BATCHES: usize = 128;
+const BATCHES: usize = 64;
 
 /// The sections of a loop.
 #[derive(Clone, Debug, Default)]

@@ -3,13 +3,11 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use fearless_simd::Simd;
-
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
 use super::{BlockSink, ModelError, Scratch};
-use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3};
+use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, load_vector, store_vector};
 use crate::mesh::{MeshError, TetMesh};
 use crate::solver::Turn;
 
@@ -162,20 +160,20 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
 
     /// The constants of the tetrahedra of a slot.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&self, simd: S, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
+    pub(super) fn load<S: Simd>(&self, part: Part<S>, slot: usize) -> [T::Lanes<S>; MAX_CONSTANTS] {
         let block = self.constants.block_of(T::LANES, K::CONSTANTS, slot);
-        let mut constants = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_CONSTANTS];
+        let mut constants = [T::Lanes::<S>::splat(part.simd, T::ZERO); MAX_CONSTANTS];
         for column in 0..K::CONSTANTS {
-            constants[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+            constants[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
         }
         constants
     }
 
     /// One of them.
     #[inline(always)]
-    pub(super) fn column<S: Simd>(&self, simd: S, slot: usize, column: usize) -> T::Lanes<S> {
+    pub(super) fn column<S: Simd>(&self, part: Part<S>, slot: usize, column: usize) -> T::Lanes<S> {
         let block = self.constants.block_of(T::LANES, K::CONSTANTS, slot);
-        T::Lanes::<S>::load(simd, &block[column * T::LANES..])
+        T::Lanes::<S>::load(part, &block[column * T::LANES..])
     }
 
     /// The constants of one tetrahedron.
@@ -206,8 +204,8 @@ impl<T: Scalar, K: TetMeasure> TetLoop<T, K> {
 
 impl<T: Scalar, K: TetMeasure> Measure<T> for TetLoop<T, K> {
     #[inline(always)]
-    fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
-        K::measure(&self.load(simd, slot)[..K::CONSTANTS], edges)
+    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
+        K::measure(&self.load(part, slot)[..K::CONSTANTS], edges)
     }
 }
 
@@ -223,15 +221,15 @@ impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
     }
 
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        K::forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0])
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        K::forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0])
     }
 }
 
 impl<T: Scalar, K: TetKernel> Element<T, 2> for Product<'_, T, K> {
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
-        K::product(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0], &edges[1])
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+        K::product(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }
 
@@ -239,8 +237,8 @@ impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
     const IS_WIDE: bool = false;
 
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
-        K::mean_forces(&self.0.load(simd, slot)[..K::CONSTANTS], &edges[0], &edges[1])
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+        K::mean_forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }
 
@@ -248,8 +246,8 @@ impl<T: Scalar, K: TetKernel> Diagonal<T> for TetLoop<T, K> {
     const IS_WIDE: bool = K::HAS_DIAGONAL;
 
     #[inline(always)]
-    fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
-        K::diagonal(&self.load(simd, slot)[..K::CONSTANTS], edges)
+    fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
+        K::diagonal(&self.load(part, slot)[..K::CONSTANTS], edges)
     }
 }
 
@@ -330,25 +328,36 @@ pub(crate) fn edge_matrix<R: Real>(x: &[Vec3<R>], corners: [u32; 4]) -> Mat3<R> 
     Mat3::from_columns(at(b) - at(a), at(c) - at(a), at(d) - at(a))
 }
 
-/// Places of one corner of a batch; `nodes` holds the corners of the batch, corner after corner.
+/// Places of one corner of a batch; `nodes` holds the corners of the block, corner after corner.
 #[inline(always)]
 pub(crate) fn gather_corner<T: Scalar, S: Simd>(
-    simd: S,
+    part: Part<S>,
     x: &[[T; 4]],
     nodes: &[u32],
     corner: usize,
 ) -> Vec3<T::Lanes<S>> {
-    let [x, y, z, _] = T::Lanes::<S>::gather(simd, x, &nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    let nodes = part.of::<T, T::Lanes<S>, _>(&nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+    let [x, y, z, _] = T::Lanes::<S>::gather(part.simd, x, nodes);
     Vec3::new(x, y, z)
 }
 
-/// Adds a force on one corner of a batch.
+/// Adds the forces on the corners of a batch, half by half.
 #[inline(always)]
-pub(crate) fn scatter_corner<T: Scalar, S: Simd>(
-    force: Vec3<T::Lanes<S>>,
+pub(crate) fn scatter_corners<T: Scalar, S: Simd, const CORNERS: usize>(
+    part: Part<S>,
+    forces: &[Vec3<T::Lanes<S>>; CORNERS],
     nodes: &[u32],
-    corner: usize,
     out: &mut [[T; 4]],
 ) {
-    T::Lanes::<S>::scatter_add(force.to_array(), &nodes[corner * T::LANES..(corner + 1) * T::LANES], out);
+    let mut kept = [[[T::ZERO; MAX_LANES]; 3]; CORNERS];
+    for corner in 0..CORNERS {
+        store_vector(part, forces[corner], &mut kept[corner]);
+    }
+    for half in part.halves::<T>() {
+        for corner in 0..CORNERS {
+            let force = load_vector::<T, S>(half, &kept[corner]);
+            let nodes = half.of::<T, T::Half<S>, _>(&nodes[corner * T::LANES..(corner + 1) * T::LANES]);
+            T::Half::<S>::scatter_add(force.to_array(), nodes, out);
+        }
+    }
 }

@@ -1,9 +1,7 @@
-use fearless_simd::dispatch;
-
 use super::vectors::{combine_into, dot_of};
 use super::{Filter, LinearOperator, Preconditioner, Size, Start, Stride};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch_level};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level};
 use crate::solver::BlockSink;
 
 /// Block-Jacobi preconditioner: the inverses of the 3×3 blocks on the diagonal, one for each node.

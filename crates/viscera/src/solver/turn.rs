@@ -1,9 +1,7 @@
-use fearless_simd::dispatch;
-
 use super::Filtered;
 use super::vectors::combine_into;
 use crate::executor::{Executor, NodeBlocks, node_blocks};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 
 /// The next direction of the conjugate gradient, p ← z + w p, and its product.
 #[derive(Debug)]

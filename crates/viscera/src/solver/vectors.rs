@@ -3,10 +3,8 @@
 //! The compiler makes whole registers of plain loops; of sums only where it need not keep their order, so that those are kept
 //! for eight nodes apart.
 
-use fearless_simd::{Simd, dispatch};
-
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Lanes, MAX_LANES, Real, Scalar, Vec3, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Part, Real, Scalar, Simd, Vec3, dispatch, dispatch_level};
 
 /// Nodes at a time, and their numbers.
 const NODES: usize = 8;
@@ -80,18 +78,19 @@ pub(crate) fn dot_of<T: Scalar>(a: &[Vec3<T>], b: &[Vec3<T>]) -> f64 {
 #[inline(always)]
 pub(crate) fn dot_of_rows<T: Scalar, S: Simd>(simd: S, a: &[[T; 4]], b: &[[T; 4]]) -> f64 {
     const SUMS: usize = 4;
-    let (mut a, mut b) =
-        (a.as_flattened().chunks_exact(SUMS * T::LANES), b.as_flattened().chunks_exact(SUMS * T::LANES));
-    let mut sums = [T::Lanes::<S>::splat(simd, T::ZERO); SUMS];
+    // Halves of a block on every processor, for the same bits.
+    let (lanes, part) = (T::Half::<S>::COUNT, Part::first(simd));
+    let (mut a, mut b) = (a.as_flattened().chunks_exact(SUMS * lanes), b.as_flattened().chunks_exact(SUMS * lanes));
+    let mut sums = [T::Half::<S>::splat(simd, T::ZERO); SUMS];
     for (a, b) in a.by_ref().zip(b.by_ref()) {
         for i in 0..SUMS {
-            let (a, b) = (T::Lanes::<S>::load(simd, &a[i * T::LANES..]), T::Lanes::<S>::load(simd, &b[i * T::LANES..]));
+            let (a, b) = (T::Half::<S>::load(part, &a[i * lanes..]), T::Half::<S>::load(part, &b[i * lanes..]));
             sums[i] = a.mul_add(b, sums[i]);
         }
     }
     let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(&a, &b)| (a * b).to_f64()).sum();
     let mut numbers = [T::ZERO; MAX_LANES];
-    ((sums[0] + sums[1]) + (sums[2] + sums[3])).store(&mut numbers);
+    ((sums[0] + sums[1]) + (sums[2] + sums[3])).store(part, &mut numbers);
     numbers.into_iter().fold(rest, |sum, number| sum + number.to_f64())
 }
 

@@ -1,8 +1,7 @@
 //! One text, many numbers: a law gives the same in scalars, in lanes of every instruction set here, and in single precision.
 
-use fearless_simd::{Level, Simd, dispatch};
 use viscera::material::{Law, LawFamily, LawKind, LawVisitor};
-use viscera::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
+use viscera::math::{Lanes, Level, Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
 
 use crate::support::{Random, assert_near};
 
@@ -23,36 +22,39 @@ pub(crate) fn levels() -> Vec<Level> {
 
 type Stresses<T> = (Vec<T>, Vec<Mat3<T>>, Vec<Mat3<T>>);
 
-/// Energy, stress and tangent of a batch, lane by lane.
+/// Energy, stress and tangent of a block, lane by lane.
 #[inline(always)]
 fn in_lanes<S: Simd, T: Scalar, L: LawFamily>(simd: S, values: &[T], f: &[Mat3<T>], df: &[Mat3<T>]) -> Stresses<T> {
     let values: Vec<T::Lanes<S>> = values.iter().map(|&value| T::Lanes::<S>::splat(simd, value)).collect();
     let law = L::at(&values);
-    let (f, df) = (pack::<S, T>(simd, f), pack::<S, T>(simd, df));
     let mut energy = vec![T::ZERO; T::LANES];
-    law.energy(&f).store(&mut energy);
-    (energy, unpack::<S, T>(law.stress(&f)), unpack::<S, T>(law.tangent(&f, &df)))
+    let (mut stress, mut tangent) = (vec![Mat3::ZERO; T::LANES], vec![Mat3::ZERO; T::LANES]);
+    for part in Part::all::<T>(simd) {
+        let (f, df) = (pack::<S, T>(part, f), pack::<S, T>(part, df));
+        law.energy(&f).store(part, &mut energy);
+        unpack::<S, T>(part, law.stress(&f), &mut stress);
+        unpack::<S, T>(part, law.tangent(&f, &df), &mut tangent);
+    }
+    (energy, stress, tangent)
 }
 
-fn pack<S: Simd, T: Scalar>(simd: S, matrices: &[Mat3<T>]) -> Mat3<T::Lanes<S>> {
+fn pack<S: Simd, T: Scalar>(part: Part<S>, matrices: &[Mat3<T>]) -> Mat3<T::Lanes<S>> {
     let entry = |column: usize, row: usize| {
         let lanes: Vec<T> = matrices.iter().map(|matrix| matrix.columns[column][row]).collect();
-        T::Lanes::<S>::load(simd, &lanes)
+        T::Lanes::<S>::load(part, &lanes)
     };
     let column = |i: usize| Vec3::new(entry(i, 0), entry(i, 1), entry(i, 2));
     Mat3::from_columns(column(0), column(1), column(2))
 }
 
-fn unpack<S: Simd, T: Scalar>(matrix: Mat3<T::Lanes<S>>) -> Vec<Mat3<T>> {
-    let mut matrices = vec![Mat3::ZERO; T::LANES];
+fn unpack<S: Simd, T: Scalar>(part: Part<S>, matrix: Mat3<T::Lanes<S>>, matrices: &mut [Mat3<T>]) {
     for column in 0..3 {
         for row in 0..3 {
-            let mut lanes = vec![T::ZERO; T::LANES];
-            matrix.columns[column][row].store(&mut lanes);
+            let mut lanes: Vec<T> = matrices.iter().map(|matrix| matrix.columns[column][row]).collect();
+            matrix.columns[column][row].store(part, &mut lanes);
             matrices.iter_mut().zip(lanes).for_each(|(matrix, value)| matrix.columns[column][row] = value);
         }
     }
-    matrices
 }
 
 /// Lanes may fuse multiplications and additions, so they equal scalars to a few roundings only.

@@ -1,7 +1,6 @@
 //! Small matrices, lanes and dual numbers: identities that hold for any numbers.
 
-use fearless_simd::{Simd, dispatch};
-use viscera::math::{Dual, Lanes, Real, Scalar, Sym3, dispatch_level};
+use viscera::math::{Dual, HalfLanes, Lanes, Part, Real, Scalar, Simd, Sym3, dispatch, dispatch_level};
 
 use crate::support::{Matrix, Random, Vector, assert_near};
 
@@ -86,15 +85,22 @@ fn dual_numbers_differentiate_every_operation() {
 
 #[inline(always)]
 fn round_trip<S: Simd, T: Scalar>(simd: S, rows: &[[T; 4]], nodes: &[u32], out: &mut [[T; 4]]) {
-    let [x, y, z, _] = T::Lanes::<S>::gather(simd, rows, nodes);
-    T::Lanes::<S>::scatter_add([x, y, z], nodes, out);
+    for part in Part::all::<T>(simd) {
+        let [x, y, z, _] = T::Lanes::<S>::gather(simd, rows, part.of::<T, T::Lanes<S>, _>(nodes));
+        let mut columns = [vec![T::ZERO; T::LANES], vec![T::ZERO; T::LANES], vec![T::ZERO; T::LANES]];
+        [x, y, z].into_iter().zip(&mut columns).for_each(|(lanes, column)| lanes.store(part, column));
+        for half in part.halves::<T>() {
+            let columns = columns.each_ref().map(|column| T::Half::<S>::load(half, column));
+            T::Half::<S>::scatter_add(columns, half.of::<T, T::Half<S>, _>(nodes), out);
+        }
+    }
 }
 
 /// Lanes that name the same node all arrive: a batch may hold neighbours. The fourth number is nobody's to touch.
 fn duplicates_add_up<T: Scalar>() {
     let number = |i: usize| T::from_f64((i as f64).sin());
     let rows: Vec<[T; 4]> = (0..6).map(|row| std::array::from_fn(|column| number(4 * row + column))).collect();
-    let nodes = [5, 2, 2, 0, 2, 5, 3, 3];
+    let nodes = [5, 2, 2, 0, 2, 5, 3, 3, 1, 1, 4, 5, 5, 0, 2, 4];
     for level in crate::law_lanes::levels() {
         let mut out = vec![[T::ZERO; 4]; 6];
         dispatch!(level, simd => round_trip(simd, &rows, &nodes, &mut out));
@@ -115,18 +121,19 @@ fn gather_and_scatter_add_lanes_that_share_a_node() {
 #[inline(always)]
 fn lane_operations<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> [Vec<f64>; 6] {
     type Lane<S> = <f64 as Scalar>::Lanes<S>;
-    let (a, b) = (Lane::<S>::load(simd, a), Lane::<S>::load(simd, b));
+    let part = Part::first(simd);
+    let (a, b) = (Lane::<S>::load(part, a), Lane::<S>::load(part, b));
     let smaller = Lane::<S>::select(a.less_than(b), a, b);
     [a.abs().sqrt(), a.min(b), a.max(b), a.abs().ln(), smaller, a.like(7.0)].map(|lanes| {
-        let mut values = vec![0.0; 4];
-        lanes.store(&mut values);
+        let mut values = vec![0.0; 8];
+        lanes.store(part, &mut values);
         values
     })
 }
 
 #[test]
 fn lanes_do_what_scalars_do() {
-    let (a, b) = ([1.5, -2.0, 0.25, 8.0], [2.0, -3.0, 0.5, -8.0]);
+    let (a, b) = ([1.5, -2.0, 0.25, 8.0, 1.5, -2.0, 0.25, 8.0], [2.0, -3.0, 0.5, -8.0, 1.0, 1.0, 1.0, 1.0]);
     let [root, smaller, larger, logarithm, selected, seven] =
         dispatch!(dispatch_level(), simd => lane_operations(simd, &a, &b));
     for lane in 0..4 {

@@ -1,8 +1,7 @@
 //! Rotations in deformation gradients: flat, inverted, null and enormous ones included.
 
-use fearless_simd::{Simd, dispatch};
 use viscera::math::rotation::{polar, polar_along, qr, svd};
-use viscera::math::{Lanes, Mat3, Scalar, Vec3, dispatch_level};
+use viscera::math::{Lanes, MAX_LANES, Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
 
 use crate::support::{Matrix, Random, Vector, assert_near};
 
@@ -195,8 +194,12 @@ fn lanes_agree_with_scalars<T: Scalar>() {
     for batch in all.chunks_exact(T::LANES) {
         let columns = |i: usize| batch.iter().map(|f| f.columns[i / 3][i % 3]).collect::<Vec<_>>();
         let numbers: [Vec<T>; 9] = std::array::from_fn(columns);
-        let mut out = [[T::ZERO; 8]; 27];
-        dispatch!(dispatch_level(), simd => rotate_batch(simd, &numbers, &mut out));
+        let mut out = [[T::ZERO; MAX_LANES]; 27];
+        dispatch!(dispatch_level(), simd => {
+            for part in Part::all::<T>(simd) {
+                rotate_batch(part, &numbers, &mut out);
+            }
+        });
         for (lane, f) in batch.iter().enumerate() {
             for (method, (name, expected)) in rotations(f).into_iter().enumerate() {
                 let number = |i: usize| out[9 * method + i][lane];
@@ -219,18 +222,18 @@ fn lanes_agree_with_scalars<T: Scalar>() {
 }
 
 #[inline(always)]
-fn rotate_batch<T: Scalar, S: Simd>(simd: S, numbers: &[Vec<T>; 9], out: &mut [[T; 8]; 27]) {
+fn rotate_batch<T: Scalar, S: Simd>(part: Part<S>, numbers: &[Vec<T>; 9], out: &mut [[T; MAX_LANES]; 27]) {
     let column = |i: usize| {
         Vec3::new(
-            T::Lanes::<S>::load(simd, &numbers[3 * i]),
-            T::Lanes::<S>::load(simd, &numbers[3 * i + 1]),
-            T::Lanes::<S>::load(simd, &numbers[3 * i + 2]),
+            T::Lanes::<S>::load(part, &numbers[3 * i]),
+            T::Lanes::<S>::load(part, &numbers[3 * i + 1]),
+            T::Lanes::<S>::load(part, &numbers[3 * i + 2]),
         )
     };
     let f = Mat3::from_columns(column(0), column(1), column(2));
     for (method, r) in [polar(&f), svd(&f).rotation(), qr(&f)].into_iter().enumerate() {
         for i in 0..9 {
-            r.columns[i / 3][i % 3].store(&mut out[9 * method + i]);
+            r.columns[i / 3][i % 3].store(part, &mut out[9 * method + i]);
         }
     }
 }

@@ -1,11 +1,9 @@
 //! The forces of a step, and what they lack to balance.
 
-use fearless_simd::dispatch;
-
 use super::Scheme;
 use super::step::Step;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::solver::{Filter, dot_of};
 use crate::stage::Stage;
 

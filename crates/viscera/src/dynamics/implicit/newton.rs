@@ -1,7 +1,5 @@
 //! Newton's method for the equations of a step, or one iteration of it.
 
-use fearless_simd::dispatch;
-
 use super::ImplicitReport;
 use super::balance::Balance;
 use super::correction::Solve;
@@ -11,7 +9,7 @@ use super::potential::Settling;
 use super::step::Step;
 use super::tools::Guess;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::solver::{Filter, dot_of};
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.

@@ -3,21 +3,19 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::{Simd, dispatch};
-
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hex_linearized::LINEARIZED;
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 use crate::model::BlockSink;
 use crate::model::block_sink::{add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::sections::{SectionScratch, Sections};
-use crate::model::tet_loop::scatter_corner;
+use crate::model::tet_loop::scatter_corners;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 use crate::model::{ForceModel, ModelError, Scratch};
 
@@ -81,29 +79,29 @@ impl<T: Scalar> CorotationalHexes<T> {
     }
 
     #[inline(always)]
-    pub(super) fn load_law<S: Simd>(&self, simd: S, block: &[T]) -> Hooke<T::Lanes<S>> {
-        let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); FIBRED];
+    pub(super) fn load_law<S: Simd>(&self, part: Part<S>, block: &[T]) -> Hooke<T::Lanes<S>> {
+        let mut numbers = [T::Lanes::<S>::splat(part.simd, T::ZERO); FIBRED];
         for column in 0..if self.fibred { FIBRED } else { ISOTROPIC } {
-            numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+            numbers[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
         }
         Hooke::at(&numbers, self.fibred)
     }
 
     /// The batch of these corners at `x`.
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, x: &[[T; 4]], nodes: &[u32], centre: &[T], law: &[T]) -> Batch<T::Lanes<S>> {
-        let place = gather_corners(simd, x, nodes);
-        let centre = load_gradients::<T, S>(simd, centre);
+    fn load<S: Simd>(&self, part: Part<S>, x: &[[T; 4]], nodes: &[u32], centre: &[T], law: &[T]) -> Batch<T::Lanes<S>> {
+        let place = gather_corners(part, x, nodes);
+        let centre = load_gradients::<T, S>(part, centre);
         let mean = deformation(&place, &centre);
         let r = self.formulation.rotation(&mean);
-        Batch { hooke: self.load_law(simd, law), place, centre, mean, r }
+        Batch { hooke: self.load_law(part, law), place, centre, mean, r }
     }
 
     /// Forces on the corners, or with `PRODUCT` their derivative along `direction`.
     #[inline(always)]
     fn element_forces<S: Simd, const PRODUCT: bool>(
         &self,
-        simd: S,
+        part: Part<S>,
         formulation: Formulation,
         batch: &Batch<T::Lanes<S>>,
         points: &[T],
@@ -111,16 +109,16 @@ impl<T: Scalar> CorotationalHexes<T> {
     ) -> [Vec3<T::Lanes<S>>; 8] {
         let Batch { hooke, place, centre, mean, r } = batch;
         let dr = if PRODUCT { formulation.rotation_along(mean, r, &deformation(direction, centre)) } else { *r };
-        let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+        let mut forces = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); 8];
         for point in points.chunks_exact(POINT * T::LANES) {
-            let gradients = load_gradients::<T, S>(simd, point);
+            let gradients = load_gradients::<T, S>(part, point);
             let f = deformation(place, &gradients);
             let stress = if PRODUCT {
                 formulation.stress_along(hooke, (r, &dr), (&f, &deformation(direction, &gradients)))
             } else {
                 formulation.stress(hooke, r, &f)
             };
-            let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+            let stress = stress * T::Lanes::<S>::load(part, &point[24 * T::LANES..]);
             for corner in 0..8 {
                 forces[corner] += stress * gradients[corner];
             }
@@ -140,11 +138,13 @@ impl<T: Scalar> CorotationalHexes<T> {
     ) {
         for number in batches {
             let nodes = self.corners.block(number);
-            let batch = self.load(simd, x, nodes, self.centres.block(number), self.law.block(number));
-            let direction = if PRODUCT { gather_corners(simd, dx, nodes) } else { batch.place };
-            let forces =
-                self.element_forces::<S, PRODUCT>(simd, formulation, &batch, self.points.block(number), &direction);
-            self.scatter::<S>(&forces, number, out);
+            for part in Part::all::<T>(simd) {
+                let batch = self.load(part, x, nodes, self.centres.block(number), self.law.block(number));
+                let direction = if PRODUCT { gather_corners(part, dx, nodes) } else { batch.place };
+                let forces =
+                    self.element_forces::<S, PRODUCT>(part, formulation, &batch, self.points.block(number), &direction);
+                self.scatter::<S>(part, &forces, number, out);
+            }
         }
     }
 
@@ -157,11 +157,15 @@ impl<T: Scalar> CorotationalHexes<T> {
 
     /// Adds the forces of a batch to the rows of its section.
     #[inline(always)]
-    pub(super) fn scatter<S: Simd>(&self, forces: &[Vec3<T::Lanes<S>>; 8], batch: usize, out: &mut [[T; 4]]) {
+    pub(super) fn scatter<S: Simd>(
+        &self,
+        part: Part<S>,
+        forces: &[Vec3<T::Lanes<S>>; 8],
+        batch: usize,
+        out: &mut [[T; 4]],
+    ) {
         let rows = self.sections.rows(batch * 8 * T::LANES..(batch + 1) * 8 * T::LANES);
-        for corner in 0..8 {
-            scatter_corner::<T, S>(forces[corner], rows, corner, out);
-        }
+        scatter_corners::<T, S, 8>(part, forces, rows, out);
     }
 
     /// The blocks of the exact tangent, column by column.
@@ -169,14 +173,17 @@ impl<T: Scalar> CorotationalHexes<T> {
     fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
         let tables = self.corners.blocks().zip(self.centres.blocks()).zip(self.points.blocks()).zip(self.law.blocks());
         for (number, (((nodes, centre), points), law)) in tables.enumerate() {
-            let batch = self.load(simd, x, nodes, centre, law);
-            for corner in 0..8 {
-                let mut columns = [batch.place; 3];
-                for axis in 0..3 {
-                    let direction = unit_displacement::<T, S, 8>(simd, corner, axis);
-                    columns[axis] = self.element_forces::<S, true>(simd, self.formulation, &batch, points, &direction);
+            let elements = self.corners.rows() - number * T::LANES;
+            for part in Part::all::<T>(simd) {
+                let batch = self.load(part, x, nodes, centre, law);
+                for corner in 0..8 {
+                    let mut columns = [batch.place; 3];
+                    for axis in 0..3 {
+                        let unit = unit_displacement::<T, S, 8>(simd, corner, axis);
+                        columns[axis] = self.element_forces::<S, true>(part, self.formulation, &batch, points, &unit);
+                    }
+                    add_block_column::<T, S, 8>(part, &columns, nodes, corner, elements, sink);
                 }
-                add_block_column::<T, S, 8>(&columns, nodes, corner, self.corners.rows() - number * T::LANES, sink);
             }
         }
     }

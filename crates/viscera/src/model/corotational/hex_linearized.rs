@@ -4,12 +4,10 @@
 
 use std::ops::Range;
 
-use fearless_simd::Simd;
-
 use super::hex::{CorotationalHexes, POINTS};
 use super::hooke::Hooke;
 use super::lane_vector::{load, store};
-use crate::math::{Lanes, Mat3, Real, Scalar, Vec3};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::model::BlockSink;
 use crate::model::block_sink::add_block;
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
@@ -31,21 +29,23 @@ impl<T: Scalar> CorotationalHexes<T> {
     ) {
         let rows = linearization.chunks_exact_mut(LINEARIZED * T::LANES);
         for (batch, row) in batches.zip(rows) {
-            let place = gather_corners(simd, x, self.corners.block(batch));
-            let centre = load_gradients::<T, S>(simd, self.centres.block(batch));
-            let r = self.formulation.rotation(&deformation(&place, &centre));
-            let turned = row.chunks_exact_mut(GRADIENTS * T::LANES);
-            for (point, turned) in self.points.block(batch).chunks_exact(POINT * T::LANES).zip(turned) {
-                let gradients = load_gradients::<T, S>(simd, point);
-                let volume = T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
-                let (transport, scale) = self.formulation.transport(&r, &deformation(&place, &gradients));
-                let transport = transport * (volume * scale).sqrt();
-                for corner in 0..8 {
-                    store(transport * gradients[corner], &mut turned[3 * corner * T::LANES..]);
+            for part in Part::all::<T>(simd) {
+                let place = gather_corners(part, x, self.corners.block(batch));
+                let centre = load_gradients::<T, S>(part, self.centres.block(batch));
+                let r = self.formulation.rotation(&deformation(&place, &centre));
+                let turned = row.chunks_exact_mut(GRADIENTS * T::LANES);
+                for (point, turned) in self.points.block(batch).chunks_exact(POINT * T::LANES).zip(turned) {
+                    let gradients = load_gradients::<T, S>(part, point);
+                    let volume = T::Lanes::<S>::load(part, &point[24 * T::LANES..]);
+                    let (transport, scale) = self.formulation.transport(&r, &deformation(&place, &gradients));
+                    let transport = transport * (volume * scale).sqrt();
+                    for corner in 0..8 {
+                        store(part, transport * gradients[corner], &mut turned[3 * corner * T::LANES..]);
+                    }
                 }
-            }
-            if let Some((direction, _)) = self.load_law(simd, self.law.block(batch)).fibre {
-                store(r * direction, &mut row[FIBRE * T::LANES..]);
+                if let Some((direction, _)) = self.load_law(part, self.law.block(batch)).fibre {
+                    store(part, r * direction, &mut row[FIBRE * T::LANES..]);
+                }
             }
         }
     }
@@ -61,17 +61,19 @@ impl<T: Scalar> CorotationalHexes<T> {
     ) {
         for batch in batches {
             let row = &linearization[batch * LINEARIZED * T::LANES..(batch + 1) * LINEARIZED * T::LANES];
-            let hooke = self.load_turned_law(simd, self.law.block(batch), row);
-            let direction = gather_corners(simd, dx, self.corners.block(batch));
-            let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
-            for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
-                let gradients = load_gradients::<T, S>(simd, turned);
-                let stress = Mat3::from(hooke.stress(deformation(&direction, &gradients).symmetric_part()));
-                for corner in 0..8 {
-                    forces[corner] += stress * gradients[corner];
+            for part in Part::all::<T>(simd) {
+                let hooke = self.load_turned_law(part, self.law.block(batch), row);
+                let direction = gather_corners(part, dx, self.corners.block(batch));
+                let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+                for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
+                    let gradients = load_gradients::<T, S>(part, turned);
+                    let stress = Mat3::from(hooke.stress(deformation(&direction, &gradients).symmetric_part()));
+                    for corner in 0..8 {
+                        forces[corner] += stress * gradients[corner];
+                    }
                 }
+                self.scatter::<S>(part, &forces, batch, out);
             }
-            self.scatter::<S>(&forces, batch, out);
         }
     }
 
@@ -85,15 +87,15 @@ impl<T: Scalar> CorotationalHexes<T> {
         let rows = linearization.chunks_exact(LINEARIZED * T::LANES);
         for (batch, ((nodes, law), row)) in self.corners.blocks().zip(self.law.blocks()).zip(rows).enumerate() {
             let elements = self.corners.rows() - batch * T::LANES;
-            let hooke = self.load_turned_law(simd, law, row);
-            for q in 0..8 {
-                for p in 0..8 {
+            for part in Part::all::<T>(simd) {
+                let hooke = self.load_turned_law(part, law, row);
+                for (q, p) in (0..8).flat_map(|q| (0..8).map(move |p| (q, p))) {
                     if p == q || !sink.keeps_diagonal_only() {
                         let mut block = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
                         for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
-                            block += hooke.block(load(simd, turned, 3 * p), load(simd, turned, 3 * q));
+                            block += hooke.block(load(part, turned, 3 * p), load(part, turned, 3 * q));
                         }
-                        add_block::<T, S>(&block, nodes, [p, q], elements, sink);
+                        add_block::<T, S>(part, &block, nodes, [p, q], elements, sink);
                     }
                 }
             }
@@ -102,8 +104,8 @@ impl<T: Scalar> CorotationalHexes<T> {
 
     /// The law of a batch, its fibres turned.
     #[inline(always)]
-    fn load_turned_law<S: Simd>(&self, simd: S, law: &[T], row: &[T]) -> Hooke<T::Lanes<S>> {
-        let hooke = self.load_law(simd, law);
-        Hooke { fibre: hooke.fibre.map(|(_, stiffness)| (load(simd, row, FIBRE), stiffness)), ..hooke }
+    fn load_turned_law<S: Simd>(&self, part: Part<S>, law: &[T], row: &[T]) -> Hooke<T::Lanes<S>> {
+        let hooke = self.load_law(part, law);
+        Hooke { fibre: hooke.fibre.map(|(_, stiffness)| (load(part, row, FIBRE), stiffness)), ..hooke }
     }
 }

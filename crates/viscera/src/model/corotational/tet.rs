@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use fearless_simd::Simd;
-
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
 use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Real, Scalar, Sym3, Vec3, prefetch};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, prefetch};
 use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
@@ -134,13 +132,13 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     #[inline(always)]
-    fn load<S: Simd, const PLAIN: bool>(&self, simd: S, slot: usize) -> Batch<T::Lanes<S>> {
+    fn load<S: Simd, const PLAIN: bool>(&self, part: Part<S>, slot: usize) -> Batch<T::Lanes<S>> {
         let fibred = !PLAIN && self.fibred;
         let columns = SHAPE + if fibred { FIBRED } else { ISOTROPIC };
         let block = self.constants.block_of(T::LANES, columns, slot);
-        let mut numbers = [T::Lanes::<S>::splat(simd, T::ZERO); MOST];
+        let mut numbers = [T::Lanes::<S>::splat(part.simd, T::ZERO); MOST];
         for column in 0..columns {
-            numbers[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+            numbers[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
         }
         Batch::at(&numbers, fibred)
     }
@@ -243,9 +241,9 @@ struct Turning<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 
 impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
-            (self.0.load::<S, PLAIN>(simd, slot), self.0.formulation::<PLAIN>());
+            (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
         let f = edges[0] * inverse;
         let stress = formulation.stress(&hooke, &formulation.rotation(&f), &f);
         stress * volume * inverse.transpose()
@@ -254,9 +252,9 @@ impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
 
 impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
-            (self.tets.load::<S, false>(simd, slot), self.formulation);
+            (self.tets.load::<S, false>(part, slot), self.formulation);
         let (f, df) = (edges[0] * inverse, edges[1] * inverse);
         let r = formulation.rotation(&f);
         let dr = formulation.rotation_along(&f, &r, &df);
@@ -267,12 +265,12 @@ impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
 
 impl<T: Scalar, const FIBRED: bool> FrozenProduct<'_, T, FIBRED> {
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, slot: usize) -> Turned<T::Lanes<S>> {
+    fn load<S: Simd>(&self, part: Part<S>, slot: usize) -> Turned<T::Lanes<S>> {
         let len = T::LANES * if FIBRED { TURNED_FIBRED } else { TURNED };
         let row = &self.0[slot * len..][..len];
-        let number = |column: usize| T::Lanes::<S>::load(simd, &row[column * T::LANES..]);
-        let gradients = Mat3::from_columns(load(simd, row, 0), load(simd, row, 3), load(simd, row, 6));
-        let fibre = if FIBRED { Some((load(simd, row, FIBRE), number(FIBRE_RATIO))) } else { None };
+        let number = |column: usize| T::Lanes::<S>::load(part, &row[column * T::LANES..]);
+        let gradients = Mat3::from_columns(load(part, row, 0), load(part, row, 3), load(part, row, 6));
+        let fibre = if FIBRED { Some((load(part, row, FIBRE), number(FIBRE_RATIO))) } else { None };
         Turned { gradients, ratio: number(RATIO), fibre }
     }
 }
@@ -289,16 +287,16 @@ impl<T: Scalar, const FIBRED: bool> Element<T, 1> for FrozenProduct<'_, T, FIBRE
     }
 
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let turned = self.load(simd, slot);
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        let turned = self.load(part, slot);
         turned.forces(&(edges[0] * turned.gradients.transpose()))
     }
 }
 
 impl<T: Scalar, const FIBRED: bool> Diagonal<T> for FrozenProduct<'_, T, FIBRED> {
     #[inline(always)]
-    fn blocks<S: Simd>(&self, simd: S, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
-        let turned = self.load(simd, slot);
+    fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
+        let turned = self.load(part, slot);
         let hooke = turned.hooke();
         let [b, c, d] = turned.gradients.columns;
         [hooke.own_block(-(b + c + d)), hooke.own_block(b), hooke.own_block(c), hooke.own_block(d)]
@@ -311,8 +309,8 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
     }
 
     #[inline(always)]
-    fn deformation<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>> {
-        *edges * self.0.load::<S, PLAIN>(simd, slot).inverse
+    fn deformation<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>> {
+        *edges * self.0.load::<S, PLAIN>(part, slot).inverse
     }
 
     #[inline(always)]
@@ -324,13 +322,13 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
     #[inline(always)]
     fn record<S: Simd>(
         &self,
-        simd: S,
+        part: Part<S>,
         slot: usize,
         &Deformed { edges, f, r }: &Deformed<T::Lanes<S>>,
         row: &mut [T],
     ) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
-            (self.0.load::<S, PLAIN>(simd, slot), self.0.formulation::<PLAIN>());
+            (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
         let (transport, scale) = formulation.transport(&r, &f);
         let root = (volume * scale * hooke.mu).sqrt();
         let turned = Turned {
@@ -339,12 +337,12 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
             fibre: hooke.fibre.map(|(direction, stiffness)| (r * direction, stiffness / hooke.mu)),
         };
         for i in 0..3 {
-            store(turned.gradients.columns[i], &mut row[3 * i * T::LANES..]);
+            store(part, turned.gradients.columns[i], &mut row[3 * i * T::LANES..]);
         }
-        turned.ratio.store(&mut row[RATIO * T::LANES..]);
+        turned.ratio.store(part, &mut row[RATIO * T::LANES..]);
         if let Some((direction, ratio)) = turned.fibre {
-            store(direction, &mut row[FIBRE * T::LANES..]);
-            ratio.store(&mut row[FIBRE_RATIO * T::LANES..]);
+            store(part, direction, &mut row[FIBRE * T::LANES..]);
+            ratio.store(part, &mut row[FIBRE_RATIO * T::LANES..]);
         }
         if formulation.is_linear_in_its_frame() {
             turned.forces(&(edges * turned.gradients.transpose() - Mat3::diagonal(root)))

@@ -1,9 +1,7 @@
 //! The entries of a batch of points, and what the law makes of them.
 
-use fearless_simd::Simd;
-
 use crate::material::{Law, LawFamily};
-use crate::math::{Lanes, Mat3, Real, Scalar, Vec3};
+use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, load_vector, store_vector};
 use crate::model::tet_loop::gather_corner;
 
 /// The most parameters of a law.
@@ -18,15 +16,15 @@ pub(super) struct Point<R> {
 
 impl<R: Real> Point<R> {
     #[inline(always)]
-    pub(super) fn load<T, S, L>(simd: S, constants: &[T]) -> Self
+    pub(super) fn load<T, S, L>(part: Part<S>, constants: &[T]) -> Self
     where
         T: Scalar<Lanes<S> = R>,
         S: Simd,
         R: Lanes<T, S>,
         L: LawFamily,
     {
-        let constant = |column: usize| R::load(simd, &constants[column * T::LANES..]);
-        let mut parameters = [R::splat(simd, T::ZERO); MAX_PARAMETERS];
+        let constant = |column: usize| R::load(part, &constants[column * T::LANES..]);
+        let mut parameters = [R::splat(part.simd, T::ZERO); MAX_PARAMETERS];
         for column in 0..L::PARAMETERS.len() {
             parameters[column] = constant(2 + column);
         }
@@ -72,41 +70,55 @@ impl<'a, T: Scalar> Batch<'a, T> {
     /// Σ_b (v_b − v_a) g_abᵀ and Σ_b k_ab (v_b − v_a): of places F̄ and the pull of the springs, of directions their
     /// derivatives. The differences keep digits that v alone would lose.
     #[inline(always)]
-    pub(super) fn around<S: Simd>(self, simd: S, v: &[[T; 4]]) -> Around<T::Lanes<S>> {
-        let own = gather_corner::<T, S>(simd, v, self.nodes, 0);
-        let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
+    pub(super) fn around<S: Simd>(self, part: Part<S>, v: &[[T; 4]]) -> Around<T::Lanes<S>> {
+        let own = gather_corner::<T, S>(part, v, self.nodes, 0);
+        let zero = Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO));
         let (mut mean, mut pull) = (Mat3::from_columns(zero, zero, zero), zero);
         for (nodes, gradient, spring) in self.entries().skip(1) {
-            let apart = gather_corner::<T, S>(simd, v, nodes, 0) - own;
-            mean += apart.outer(load_gradient::<T, S>(simd, gradient));
-            pull += apart * T::Lanes::<S>::load(simd, spring);
+            let apart = gather_corner::<T, S>(part, v, nodes, 0) - own;
+            mean += apart.outer(load_gradient::<T, S, _>(part, gradient));
+            pull += apart * T::Lanes::<S>::load(part, spring);
         }
         (mean, pull)
     }
 
-    /// Adds the forces of a stress and of a pull of springs on the nodes around; what is left to make them all zero acts on
+    /// Adds the forces of a stress and of a pull of springs on the nodes around, half by half; what is left to make them all zero acts on
     /// the node itself.
     #[inline(always)]
     pub(super) fn spread<S: Simd>(
         self,
-        simd: S,
+        part: Part<S>,
         stress: Mat3<T::Lanes<S>>,
         pull: Vec3<T::Lanes<S>>,
         out: &mut [[T; 4]],
     ) {
+        let [a, b, c] = stress.columns;
+        let mut kept = [[[T::ZERO; MAX_LANES]; 3]; 4];
+        for (vector, kept) in [a, b, c, pull].into_iter().zip(&mut kept) {
+            store_vector(part, vector, kept);
+        }
+        for half in part.halves::<T>() {
+            let (a, b) = (load_vector::<T, S>(half, &kept[0]), load_vector::<T, S>(half, &kept[1]));
+            let (c, pull) = (load_vector::<T, S>(half, &kept[2]), load_vector::<T, S>(half, &kept[3]));
+            self.spread_half::<S>(half, Mat3::from_columns(a, b, c), pull, out);
+        }
+    }
+
+    #[inline(always)]
+    fn spread_half<S: Simd>(self, half: Part<S>, stress: Mat3<T::Half<S>>, pull: Vec3<T::Half<S>>, out: &mut [[T; 4]]) {
         let mut sum = pull;
         let gradients = self.gradients.chunks_exact(3 * T::LANES);
         for (rows, gradient) in self.rows.chunks_exact(T::LANES).zip(gradients).skip(1) {
-            let force = stress * load_gradient::<T, S>(simd, gradient);
+            let force = stress * load_gradient::<T, S, _>(half, gradient);
             sum += force;
-            T::Lanes::<S>::scatter_add(force.to_array(), rows, out);
+            T::Half::<S>::scatter_add(force.to_array(), half.of::<T, T::Half<S>, _>(rows), out);
         }
-        T::Lanes::<S>::scatter_add((-sum).to_array(), &self.rows[..T::LANES], out);
+        T::Half::<S>::scatter_add((-sum).to_array(), half.of::<T, T::Half<S>, _>(&self.rows[..T::LANES]), out);
     }
 }
 
 #[inline(always)]
-pub(super) fn load_gradient<T: Scalar, S: Simd>(simd: S, gradient: &[T]) -> Vec3<T::Lanes<S>> {
-    let component = |axis: usize| T::Lanes::<S>::load(simd, &gradient[axis * T::LANES..]);
+pub(super) fn load_gradient<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, gradient: &[T]) -> Vec3<R> {
+    let component = |axis: usize| R::load(part, &gradient[axis * T::LANES..]);
     Vec3::new(component(0), component(1), component(2))
 }

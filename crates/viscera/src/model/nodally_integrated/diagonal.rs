@@ -4,13 +4,11 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, dispatch};
-
-use super::batch::{Point, load_gradient};
+use super::batch::{Batch, Point, load_gradient};
 use super::points::NodalPoints;
 use super::tangent::load_deformation;
 use crate::material::LawFamily;
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, dispatch_level};
+use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level};
 use crate::model::Scratch;
 use crate::model::sections::SectionScratch;
 
@@ -27,25 +25,48 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_diagonal_with<S: Simd>(&self, simd: S, kept: &[T], batches: Range<usize>, out: &mut [[T; 4]]) {
-        let zero = T::Lanes::<S>::splat(simd, T::ZERO);
         for number in batches {
-            let batch = self.batch(number);
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
-            let forms = forms::<_, L>(&point, &load_deformation::<T, S>(simd, kept, number), zero);
-            // All springs of a point hold the point itself; the others have theirs from points of their own.
-            let mut spring = zero;
-            for (_, _, one) in batch.entries() {
-                spring += T::Lanes::<S>::load(simd, one);
-            }
-            let others = batch.rows.chunks_exact(T::LANES).zip(batch.gradients.chunks_exact(3 * T::LANES));
-            for (rows, gradient) in others {
-                let form = Sym3::square(load_gradient::<T, S>(simd, gradient));
-                let [xx, yy, zz, xy, xz, yz] = forms.map(|of| of.contract(form));
-                let on_axes = Vec3::new(xx, yy, zz) + Vec3::splat(spring);
-                spring = zero;
-                add_rows::<T, S>([on_axes, Vec3::new(xy, xz, yz)], rows, out);
+            for part in Part::all::<T>(simd) {
+                let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+                let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
+                let forms = forms::<_, L>(&point, &load_deformation::<T, S>(part, kept, number), zero);
+                let mut kept = [[[T::ZERO; MAX_LANES]; 6]; 6];
+                for (form, kept) in forms.into_iter().zip(&mut kept) {
+                    let Sym3 { xx, yy, zz, xy, xz, yz } = form;
+                    [xx, yy, zz, xy, xz, yz]
+                        .into_iter()
+                        .zip(kept)
+                        .for_each(|(number, kept)| number.store(Part::first(simd), kept));
+                }
+                for half in part.halves::<T>() {
+                    let within = half.within::<T>();
+                    let forms = kept.map(|kept| {
+                        let [xx, yy, zz, xy, xz, yz] = [0, 1, 2, 3, 4, 5].map(|i| T::Half::<S>::load(within, &kept[i]));
+                        Sym3 { xx, yy, zz, xy, xz, yz }
+                    });
+                    spread(half, self.batch(number), forms, out);
+                }
             }
         }
+    }
+}
+
+/// Adds what forms make of the gradients of half a batch, and its springs.
+#[inline(always)]
+fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, forms: [Sym3<T::Half<S>>; 6], out: &mut [[T; 4]]) {
+    let zero = T::Half::<S>::splat(half.simd, T::ZERO);
+    // All springs of a point hold the point itself; the others have theirs from points of their own.
+    let mut spring = zero;
+    for (_, _, one) in batch.entries() {
+        spring += T::Half::<S>::load(half, one);
+    }
+    let others = batch.rows.chunks_exact(T::LANES).zip(batch.gradients.chunks_exact(3 * T::LANES));
+    for (rows, gradient) in others {
+        let form = Sym3::square(load_gradient::<T, S, T::Half<S>>(half, gradient));
+        let [xx, yy, zz, xy, xz, yz] = forms.map(|of| of.contract(form));
+        let on_axes = Vec3::new(xx, yy, zz) + Vec3::splat(spring);
+        spring = zero;
+        add_rows::<T, S>(half, [on_axes, Vec3::new(xy, xz, yz)], rows, out);
     }
 }
 
@@ -69,12 +90,13 @@ fn forms<R: Real, L: LawFamily>(point: &Point<R>, f: &Mat3<R>, zero: R) -> [Sym3
 
 /// Adds the two rows of a block to those of a node, for each lane.
 #[inline(always)]
-fn add_rows<T: Scalar, S: Simd>(pair: [Vec3<T::Lanes<S>>; 2], rows: &[u32], out: &mut [[T; 4]]) {
+fn add_rows<T: Scalar, S: Simd>(half: Part<S>, pair: [Vec3<T::Half<S>>; 2], rows: &[u32], out: &mut [[T; 4]]) {
     for (second, numbers) in pair.into_iter().enumerate() {
+        let rows = half.of::<T, T::Half<S>, _>(rows);
         let mut places = [0; MAX_LANES];
-        for lane in 0..T::LANES {
+        for lane in 0..T::Half::<S>::COUNT {
             places[lane] = 2 * rows[lane] + second as u32;
         }
-        T::Lanes::<S>::scatter_add(numbers.to_array(), &places[..T::LANES], out);
+        T::Half::<S>::scatter_add(numbers.to_array(), &places[..T::Half::<S>::COUNT], out);
     }
 }

@@ -4,12 +4,10 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::{Simd, dispatch};
-
 use super::batch::{Batch, MAX_PARAMETERS, Point};
 use super::rest::{Neighbour, Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Mat3, Scalar, Vec3, dispatch_level};
+use crate::math::{Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::block_table::BlockTable;
 use crate::model::sections::{SectionScratch, Sections};
@@ -17,7 +15,7 @@ use crate::model::{ModelError, Scratch};
 
 /// Points whose numbers of neighbours are sorted together, in batches: it fills the lanes, and a wider window would
 /// take neighbours apart.
-const WINDOW: usize = 32;
+const WINDOW: usize = 16;
 
 /// Points in batches of lanes, of the law `L`.
 #[derive(Debug)]
@@ -190,9 +188,11 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
         for number in batches {
             let batch = self.batch(number);
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
-            let (f, pull) = batch.around::<S>(simd, x);
-            batch.spread::<S>(simd, point.stress::<L>(&f), pull, out);
+            for part in Part::all::<T>(simd) {
+                let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
+                let (f, pull) = batch.around::<S>(part, x);
+                batch.spread::<S>(part, point.stress::<L>(&f), pull, out);
+            }
         }
     }
 

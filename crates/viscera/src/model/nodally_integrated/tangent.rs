@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, dispatch};
-
 use super::batch::{Batch, Point, load_gradient};
 use super::points::NodalPoints;
 use crate::material::LawFamily;
-use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::model::block_sink::add_block;
 use crate::model::sections::SectionScratch;
 use crate::model::{BlockSink, Scratch};
@@ -32,9 +30,12 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     #[inline(always)]
     fn keep_with<S: Simd>(&self, simd: S, x: &[[T; 4]], batches: Range<usize>, kept: &mut [T]) {
         for (number, kept) in batches.zip(kept.chunks_exact_mut(DEFORMATION * T::LANES)) {
-            let (f, _) = self.batch(number).around::<S>(simd, x);
-            let numbers = f.columns.into_iter().flat_map(Vec3::to_array);
-            numbers.zip(kept.chunks_exact_mut(T::LANES)).for_each(|(number, kept)| number.store(kept));
+            for part in Part::all::<T>(simd) {
+                let (f, _) = self.batch(number).around::<S>(part, x);
+                for i in 0..DEFORMATION {
+                    f.columns[i / 3].to_array()[i % 3].store(part, &mut kept[i * T::LANES..]);
+                }
+            }
         }
     }
 
@@ -78,10 +79,12 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     fn add_product_with<S: Simd>(&self, simd: S, kept: &[T], dx: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
         for number in batches {
             let batch = self.batch(number);
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
-            let (df, pull) = batch.around::<S>(simd, dx);
-            let f = load_deformation::<T, S>(simd, kept, number);
-            batch.spread::<S>(simd, point.tangent::<L>(&f, &df), pull, out);
+            for part in Part::all::<T>(simd) {
+                let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
+                let (df, pull) = batch.around::<S>(part, dx);
+                let f = load_deformation::<T, S>(part, kept, number);
+                batch.spread::<S>(part, point.tangent::<L>(&f, &df), pull, out);
+            }
         }
     }
 
@@ -94,60 +97,73 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
     // K_bc = V Σ A:(g_b ⊗ g_c): the law's nine derivatives once, then products with gradients.
     #[inline(always)]
     fn add_blocks_with<S: Simd>(&self, simd: S, kept: &[T], sink: &mut dyn BlockSink<T>) {
-        let zero = T::Lanes::<S>::splat(simd, T::ZERO);
-        let one = T::Lanes::<S>::splat(simd, T::ONE);
         for number in 0..self.starts.len() - 1 {
-            let batch = self.batch(number);
-            let point = Point::<T::Lanes<S>>::load::<T, S, L>(simd, self.constants.block(number));
-            let f = load_deformation::<T, S>(simd, kept, number);
-            let Batch { nodes, gradients, springs, .. } = batch;
-            let mut derivatives = [[f; 3]; 3];
-            for row in 0..3 {
-                for column in 0..3 {
-                    let mut direction = Mat3::from_columns(Vec3::splat(zero), Vec3::splat(zero), Vec3::splat(zero));
-                    direction.columns[column][row] = one;
-                    derivatives[row][column] = point.tangent::<L>(&f, &direction);
-                }
+            for part in Part::all::<T>(simd) {
+                self.add_blocks_of::<S>(part, kept, number, sink);
             }
-            let count = nodes.len() / T::LANES;
-            let points = self.constants.rows() - number * T::LANES;
-            for c in 0..count {
-                let g = load_gradient::<T, S>(simd, &gradients[3 * c * T::LANES..]);
-                let along = [0, 1, 2].map(|row: usize| {
-                    let [a, b, c] = derivatives[row];
-                    a * g.x + b * g.y + c * g.z
-                });
-                let rows = if sink.keeps_diagonal_only() { c..c + 1 } else { 0..count };
-                for b in rows {
-                    let g = load_gradient::<T, S>(simd, &gradients[3 * b * T::LANES..]);
-                    let [x, y, z] = along.map(|stress| stress * g);
-                    let block = Mat3::from_columns(x, y, z);
-                    add_block::<T, S>(&block, nodes, [b, c], points, sink);
-                }
-            }
-            self.add_springs::<S>(simd, nodes, springs, points, sink);
         }
+    }
+
+    #[inline(always)]
+    fn add_blocks_of<S: Simd>(&self, part: Part<S>, kept: &[T], number: usize, sink: &mut dyn BlockSink<T>) {
+        let zero = T::Lanes::<S>::splat(part.simd, T::ZERO);
+        let one = T::Lanes::<S>::splat(part.simd, T::ONE);
+        let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
+        let f = load_deformation::<T, S>(part, kept, number);
+        let Batch { nodes, gradients, springs, .. } = self.batch(number);
+        let mut derivatives = [[f; 3]; 3];
+        for row in 0..3 {
+            for column in 0..3 {
+                let mut direction = Mat3::from_columns(Vec3::splat(zero), Vec3::splat(zero), Vec3::splat(zero));
+                direction.columns[column][row] = one;
+                derivatives[row][column] = point.tangent::<L>(&f, &direction);
+            }
+        }
+        let count = nodes.len() / T::LANES;
+        let points = self.constants.rows() - number * T::LANES;
+        for c in 0..count {
+            let g = load_gradient::<T, S, T::Lanes<S>>(part, &gradients[3 * c * T::LANES..]);
+            let along = [0, 1, 2].map(|row: usize| {
+                let [a, b, c] = derivatives[row];
+                a * g.x + b * g.y + c * g.z
+            });
+            let rows = if sink.keeps_diagonal_only() { c..c + 1 } else { 0..count };
+            for b in rows {
+                let g = load_gradient::<T, S, T::Lanes<S>>(part, &gradients[3 * b * T::LANES..]);
+                let [x, y, z] = along.map(|stress| stress * g);
+                let block = Mat3::from_columns(x, y, z);
+                add_block::<T, S>(part, &block, nodes, [b, c], points, sink);
+            }
+        }
+        self.add_springs::<S>(part, nodes, springs, points, sink);
     }
 
     /// Springs hold a point to its neighbours: its own row of the matrix, as the neighbours' points have theirs.
     #[inline(always)]
-    fn add_springs<S: Simd>(&self, simd: S, nodes: &[u32], springs: &[T], points: usize, sink: &mut dyn BlockSink<T>) {
-        let mut sum = T::Lanes::<S>::splat(simd, T::ZERO);
+    fn add_springs<S: Simd>(
+        &self,
+        part: Part<S>,
+        nodes: &[u32],
+        springs: &[T],
+        points: usize,
+        sink: &mut dyn BlockSink<T>,
+    ) {
+        let mut sum = T::Lanes::<S>::splat(part.simd, T::ZERO);
         for (entry, spring) in springs.chunks_exact(T::LANES).enumerate().skip(1) {
-            let spring = T::Lanes::<S>::load(simd, spring);
+            let spring = T::Lanes::<S>::load(part, spring);
             sum += spring;
             if !sink.keeps_diagonal_only() {
-                add_block::<T, S>(&Mat3::diagonal(-spring), nodes, [0, entry], points, sink);
+                add_block::<T, S>(part, &Mat3::diagonal(-spring), nodes, [0, entry], points, sink);
             }
         }
-        add_block::<T, S>(&Mat3::diagonal(sum), nodes, [0, 0], points, sink);
+        add_block::<T, S>(part, &Mat3::diagonal(sum), nodes, [0, 0], points, sink);
     }
 }
 
 /// F̄ of the points of a batch.
 #[inline(always)]
-pub(super) fn load_deformation<T: Scalar, S: Simd>(simd: S, kept: &[T], batch: usize) -> Mat3<T::Lanes<S>> {
+pub(super) fn load_deformation<T: Scalar, S: Simd>(part: Part<S>, kept: &[T], batch: usize) -> Mat3<T::Lanes<S>> {
     let kept = &kept[batch * DEFORMATION * T::LANES..(batch + 1) * DEFORMATION * T::LANES];
-    let column = |i: usize| load_gradient::<T, S>(simd, &kept[3 * i * T::LANES..]);
+    let column = |i: usize| load_gradient::<T, S, T::Lanes<S>>(part, &kept[3 * i * T::LANES..]);
     Mat3::from_columns(column(0), column(1), column(2))
 }

@@ -1,10 +1,8 @@
 //! The direction of a product on copies of nodes: it follows the conjugate gradient there, so that an iteration reads of each node only
 //! what changes it.
 
-use fearless_simd::dispatch;
-
 use super::{PatchRows, Patches};
-use crate::math::{Scalar, Vec3, dispatch_level};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::solver::{Turn, dot_of_rows};
 
 impl Patches {

@@ -1,8 +1,6 @@
 //! What loops over tetrahedra ask of those who know them, slot by slot.
 
-use fearless_simd::Simd;
-
-use crate::math::{Mat3, Scalar, Sym3};
+use crate::math::{Mat3, Part, Scalar, Simd, Sym3};
 
 /// What a loop makes of tetrahedra at which the lanes are, as a function of their edges in some nodal arrays.
 pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
@@ -11,7 +9,7 @@ pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
     /// Asks for the numbers of a slot that the loop will come to, if there is one.
     fn prefetch(&self, _slot: usize) {}
     /// Forces on the corners 1, 2, 3 of the tetrahedra of a slot; that on corner 0 is minus their sum.
-    fn forces<S: Simd>(&self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
 }
 
 /// Blocks on the diagonal of a stiffness, as a function of the edges.
@@ -19,7 +17,7 @@ pub(crate) trait Diagonal<T: Scalar>: Sync {
     /// Whether it is worth compiling for each instruction set.
     const IS_WIDE: bool = true;
     /// The blocks of the four corners of the tetrahedra of a slot.
-    fn blocks<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
+    fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
 }
 
 /// What a loop keeps of tetrahedra, as a function of their edges, and what it finds of their forces on the way.
@@ -30,13 +28,13 @@ pub(crate) trait Record<T: Scalar>: Sync {
     /// How many numbers it keeps of each.
     fn columns(&self) -> usize;
     /// The deformation gradients F of the tetrahedra of a slot.
-    fn deformation<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
+    fn deformation<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
     /// Their rotations R.
     fn rotation<S: Simd>(&self, f: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
     /// Writes the block of rows of a slot; gives the forces on the corners 1, 2, 3.
     fn record<S: Simd>(
         &self,
-        simd: S,
+        part: Part<S>,
         slot: usize,
         place: &Deformed<T::Lanes<S>>,
         block: &mut [T],
@@ -57,5 +55,5 @@ pub(crate) struct Deformed<R> {
 /// A number of tetrahedra, as a function of their edges.
 pub(crate) trait Measure<T: Scalar>: Sync {
     /// The number of each tetrahedron of a slot.
-    fn measure<S: Simd>(&self, simd: S, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S>;
+    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S>;
 }

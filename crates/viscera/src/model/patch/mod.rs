@@ -4,6 +4,7 @@
 //! A patch numbers its nodes for itself. A node that several patches share has a copy in each of them; the copies are added
 //! up in the order of the patches, so that the bits of the sum do not depend on the number of threads.
 
+mod batch;
 mod copies;
 mod direction;
 mod element;

@@ -1,11 +1,10 @@
-use fearless_simd::{Simd, dispatch};
-
+use super::batch::Batch;
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
 use super::{PatchRows, Patches, PerPatch, no_rows};
 use crate::executor::Executor;
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::Sums;
 use crate::solver::Turn;
@@ -31,31 +30,6 @@ pub(crate) struct TetFans {
     /// The row of each cell.
     rows: Vec<u32>,
     lanes: usize,
-}
-
-/// As many fans as there are lanes, all of one length.
-#[derive(Clone, Copy, Debug)]
-struct Batch {
-    /// Where its nodes begin.
-    nodes: usize,
-    /// The first of its slots.
-    slot: usize,
-    /// How many slots it has.
-    length: usize,
-    /// Whether all its fans go all the way around.
-    is_closed: bool,
-}
-
-impl Batch {
-    /// How many nodes each ring has.
-    fn ring(&self) -> usize {
-        self.length + usize::from(!self.is_closed)
-    }
-
-    /// The places among its nodes of the corners of a slot.
-    fn corners(&self, slot: usize) -> [usize; 4] {
-        [0, 1, 2 + slot, 2 + (slot + 1) % self.ring()]
-    }
 }
 
 /// A tetrahedron of a loop.
@@ -102,7 +76,7 @@ impl TetFans {
     fn add_batch(&mut self, fans: &[Fan], part: &[u32]) {
         let length = fans.iter().map(|fan| fan.cells.len()).max().unwrap_or(0);
         let is_closed = fans.iter().all(|fan| fan.cells.len() == length && fan.is_closed());
-        let batch = Batch { nodes: self.nodes.len(), slot: self.slots(), length, is_closed };
+        let batch = Batch { nodes: self.nodes.len(), slot: self.slots(), length, fans: fans.len(), is_closed };
         self.batches.push(batch);
         let fan = |lane: usize| fans.get(lane).unwrap_or(&fans[0]);
         for end in 0..2 {
@@ -227,7 +201,7 @@ impl TetFans {
     ) -> T {
         let mut measuring = Measuring { element, measure, largest: T::Lanes::<S>::splat(simd, T::ZERO) };
         self.scatter_with(simd, patch, [places], &mut measuring, sums);
-        largest_lane(measuring.largest)
+        largest_lane(simd, measuring.largest)
     }
 
     /// The same for a product at `x`, along the direction that `turn` is on its way to, with masses; gives the curvature along it as well.
@@ -288,8 +262,7 @@ impl TetFans {
         element: impl Forces<T, S, FIELDS>,
         sums: &mut PatchRows<T>,
     ) {
-        let zero = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
-        let mut scatter = Scatter { element, sums, forces: [zero; LONGEST] };
+        let mut scatter = Scatter { element, sums, forces: [[[[T::ZERO; MAX_LANES]; 3]; 3]; LONGEST] };
         self.walk(simd, patch, fields, &mut scatter);
     }
 
@@ -326,8 +299,7 @@ impl TetFans {
         element: &impl Diagonal<T>,
         sums: &mut [PatchRows<T>; 2],
     ) {
-        let zero = Sym3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
-        let mut scatter = ScatterBlocks { element, sums, blocks: [[zero; 4]; LONGEST] };
+        let mut scatter = ScatterBlocks { element, sums, blocks: [[[[T::ZERO; MAX_LANES]; 3]; 8]; LONGEST] };
         self.walk(simd, patch, [places], &mut scatter);
     }
 
@@ -365,7 +337,16 @@ impl TetFans {
         let zero = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
         let (first, batch) = (self.slot_starts[patch], (0, 0));
         let deformed = [Deformed { edges: zero, f: zero, r: zero }; LONGEST];
-        let mut keep = Keep { record, values, first, block, sums, batch, places: deformed, simd };
+        let mut keep = Keep {
+            record,
+            values,
+            first,
+            block,
+            sums,
+            batch,
+            places: deformed,
+            forces: [[[[T::ZERO; MAX_LANES]; 3]; 3]; LONGEST],
+        };
         self.walk(simd, patch, [places], &mut keep);
     }
 
@@ -389,7 +370,7 @@ impl TetFans {
     ) -> T {
         let mut largest = Largest { measure, value: T::Lanes::<S>::splat(simd, T::ZERO) };
         self.walk(simd, patch, [places], &mut largest);
-        largest_lane(largest.value)
+        largest_lane(simd, largest.value)
     }
 
     /// Leads `visitor` along the fans of a patch.
@@ -410,24 +391,28 @@ impl TetFans {
             let nodes = &self.nodes[batch.nodes..batch.nodes + (2 + batch.ring()) * T::LANES];
             let (origin, nodes) = nodes.split_at(T::LANES);
             let (end, nodes) = nodes.split_at(T::LANES);
-            let at_origin = gather(simd, fields, origin);
-            let axis = minus(gather(simd, fields, end), &at_origin);
-            for (place, nodes) in ring.iter_mut().zip(nodes.chunks_exact(T::LANES)) {
-                *place = minus(gather(simd, fields, nodes), &at_origin);
+            let (ring_nodes, last) = nodes.split_at(batch.length * T::LANES);
+            let last = if batch.is_closed { &ring_nodes[..T::LANES] } else { last };
+            let batch_nodes =
+                BatchNodes { origin, end, ring: ring_nodes, last, is_closed: batch.is_closed, fans: batch.fans };
+            for part in Part::all::<T>(simd).take_while(|part| part.start::<T, T::Lanes<S>>() < batch.fans) {
+                let at_origin = gather(part, fields, origin);
+                let axis = minus(gather(part, fields, end), &at_origin);
+                for (place, nodes) in ring.iter_mut().zip(nodes.chunks_exact(T::LANES)) {
+                    *place = minus(gather(part, fields, nodes), &at_origin);
+                }
+                let length = batch.length.min(LONGEST);
+                if batch.is_closed {
+                    ring[length] = ring[0];
+                }
+                for place in 0..length {
+                    let edges = std::array::from_fn(|field| {
+                        Mat3::from_columns(axis[field], ring[place][field], ring[place + 1][field])
+                    });
+                    visitor.tetrahedron(part, batch.slot + place, place, &edges);
+                }
+                visitor.end(part, &batch_nodes);
             }
-            let length = batch.length.min(LONGEST);
-            if batch.is_closed {
-                ring[length] = ring[0];
-            }
-            for place in 0..length {
-                let edges = std::array::from_fn(|field| {
-                    Mat3::from_columns(axis[field], ring[place][field], ring[place + 1][field])
-                });
-                visitor.tetrahedron(simd, batch.slot + place, place, &edges);
-            }
-            let (ring, last) = nodes.split_at(batch.length * T::LANES);
-            let last = if batch.is_closed { &ring[..T::LANES] } else { last };
-            visitor.end(&BatchNodes { origin, end, ring, last, is_closed: batch.is_closed });
         }
     }
 }
@@ -436,9 +421,9 @@ impl TetFans {
 type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, T>);
 
 #[inline(always)]
-fn largest_lane<T: Scalar, S: Simd>(value: impl Lanes<T, S>) -> T {
+fn largest_lane<T: Scalar, S: Simd>(simd: S, value: T::Lanes<S>) -> T {
     let mut lanes = [T::ZERO; MAX_LANES];
-    value.store(&mut lanes);
+    value.store(Part::first(simd), &mut lanes);
     lanes.into_iter().fold(T::ZERO, Real::max)
 }
 
@@ -470,14 +455,14 @@ fn ring_node(fan: &Fan, place: usize) -> u32 {
 
 #[inline(always)]
 fn gather<T: Scalar, S: Simd, const FIELDS: usize>(
-    simd: S,
+    part: Part<S>,
     fields: [&PatchRows<T>; FIELDS],
     nodes: &[u32],
 ) -> [Vec3<T::Lanes<S>>; FIELDS] {
-    let indices = indices(nodes, T::LANES);
-    let mut places = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); FIELDS];
+    let indices = indices::<T, S, T::Lanes<S>>(part, nodes);
+    let mut places = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); FIELDS];
     for field in 0..FIELDS {
-        let [x, y, z, _] = T::Lanes::<S>::gather(simd, fields[field], &indices[..T::LANES]);
+        let [x, y, z, _] = T::Lanes::<S>::gather(part.simd, fields[field], &indices[..T::Lanes::<S>::COUNT]);
         places[field] = Vec3::new(x, y, z);
     }
     places

@@ -1,19 +1,19 @@
 //! What loops do along the fans of a patch: add up forces or blocks, keep numbers, look for the largest.
 
-use fearless_simd::Simd;
-
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
-use crate::math::{Lanes, MAX_LANES, Mat3, Real, Scalar, Sym3, Vec3};
+use crate::math::{
+    HalfLanes, Halving, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, load_vector, store_vector,
+};
 
 /// Whoever is led along the fans, a batch at a time.
 pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
     /// The tetrahedra of a slot, in this `place` of their fans.
-    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]);
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]);
     /// All tetrahedra of the batch have been visited.
     #[inline(always)]
-    fn end(&mut self, _nodes: &BatchNodes<'_>) {}
+    fn end(&mut self, _part: Part<S>, _nodes: &BatchNodes<'_>) {}
 }
 
 /// Nodes of a batch of fans, for all lanes each.
@@ -28,22 +28,34 @@ pub(super) struct BatchNodes<'a> {
     pub(super) last: &'a [u32],
     /// Whether that is the first of the ring.
     pub(super) is_closed: bool,
+    /// How many lanes have fans of their own.
+    pub(super) fans: usize,
+}
+
+impl BatchNodes<'_> {
+    /// The halves of a part that have fans of their own.
+    #[inline(always)]
+    fn halves<T: Scalar, S: Simd>(&self, part: Part<S>) -> impl Iterator<Item = Part<S>> {
+        part.halves::<T>().take_while(|half| half.start::<T, T::Half<S>>() < self.fans)
+    }
 }
 
 /// How many slots a loop looks ahead.
-const AHEAD: usize = 4;
+const AHEAD: usize = 2;
 
 /// Who knows the forces of the tetrahedra of a slot.
 pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
     /// Those on the corners 1, 2, 3.
-    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
+    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
 }
 
 impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Forces<T, S, FIELDS> for &E {
     #[inline(always)]
-    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>> {
-        self.prefetch(slot + AHEAD);
-        (**self).forces(simd, slot, edges)
+    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>> {
+        if part.is_first() {
+            self.prefetch(slot + AHEAD);
+        }
+        (**self).forces(part, slot, edges)
     }
 }
 
@@ -56,57 +68,85 @@ pub(super) struct Measuring<'a, E, M, V> {
 
 impl<T: Scalar, S: Simd, E: Element<T, 1>, M: Measure<T>> Forces<T, S, 1> for &mut Measuring<'_, E, M, T::Lanes<S>> {
     #[inline(always)]
-    fn forces(&mut self, simd: S, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        self.largest = self.largest.max(self.measure.measure(simd, slot, &edges[0]));
-        self.element.forces(simd, slot, edges)
+    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        self.largest = self.largest.max(self.measure.measure(part, slot, &edges[0]));
+        self.element.forces(part, slot, edges)
     }
 }
 
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
-pub(super) struct Scatter<'a, T: Scalar, S: Simd, F> {
+pub(super) struct Scatter<'a, T: Scalar, F> {
     pub(super) element: F,
     pub(super) sums: &'a mut PatchRows<T>,
     /// The forces of a batch.
-    pub(super) forces: [Mat3<T::Lanes<S>>; LONGEST],
+    pub(super) forces: KeptVectors<T, 3>,
 }
 
-impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, S, F> {
+impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, F> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
-        self.forces[place] = self.element.forces(simd, slot, edges);
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
+        keep::<T, S>(part, self.element.forces(part, slot, edges), &mut self.forces[place]);
     }
 
     #[inline(always)]
-    fn end(&mut self, nodes: &BatchNodes<'_>) {
-        add_up(&self.forces, nodes, self.sums);
+    fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
+        add_up_halves(&self.forces, part, nodes, self.sums);
     }
 }
 
-/// Adds up the forces of a batch.
+/// Vectors of the tetrahedra of a batch, which are added up half by half: in the same order on every processor.
+pub(super) type KeptVectors<T, const VECTORS: usize> = [[Halving<T, 3>; VECTORS]; LONGEST];
+
 #[inline(always)]
-fn add_up<T: Scalar, S: Simd, L: Lanes<T, S>>(
-    forces: &[Mat3<L>; LONGEST],
+fn keep<T: Scalar, S: Simd>(part: Part<S>, forces: Mat3<T::Lanes<S>>, kept: &mut [Halving<T, 3>; 3]) {
+    for corner in 0..3 {
+        store_vector(part, forces.columns[corner], &mut kept[corner]);
+    }
+}
+
+#[inline(always)]
+fn add_up_halves<T: Scalar, S: Simd>(
+    forces: &KeptVectors<T, 3>,
+    part: Part<S>,
+    nodes: &BatchNodes<'_>,
+    sums: &mut PatchRows<T>,
+) {
+    for half in nodes.halves::<T, S>(part) {
+        add_up(forces, half, nodes, sums);
+    }
+}
+
+#[inline(always)]
+fn forces_of<T: Scalar, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 3]) -> [Vec3<T::Half<S>>; 3] {
+    [load_vector(half, &kept[0]), load_vector(half, &kept[1]), load_vector(half, &kept[2])]
+}
+
+/// Adds up the forces of half a batch.
+#[inline(always)]
+fn add_up<T: Scalar, S: Simd>(
+    forces: &KeptVectors<T, 3>,
+    half: Part<S>,
     nodes: &BatchNodes<'_>,
     sums: &mut PatchRows<T>,
 ) {
     // `ring` sums up the forces on the ring: what is left to make them all zero acts on the origin. `carried` is what the last tetrahedron
     // exerts on the node that it shares with the next, and `kept` waits where the ring will close.
-    let [mut end, kept, mut carried] = forces[0].columns;
+    let [mut end, kept, mut carried] = forces_of::<T, S>(half, &forces[0]);
     let mut ring = kept;
     if !nodes.is_closed {
-        add(kept, &nodes.ring[..T::LANES], sums);
+        add(half, kept, &nodes.ring[..T::LANES], sums);
     }
     for (forces, from) in forces.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
-        let [on_end, on_ring, next] = forces.columns;
+        let [on_end, on_ring, next] = forces_of::<T, S>(half, forces);
         let on_ring = carried + on_ring;
         end += on_end;
         ring += on_ring;
         carried = next;
-        add(on_ring, from, sums);
+        add(half, on_ring, from, sums);
     }
-    add(if nodes.is_closed { kept + carried } else { carried }, nodes.last, sums);
-    add(end, nodes.end, sums);
-    add(-(ring + carried + end), nodes.origin, sums);
+    add(half, if nodes.is_closed { kept + carried } else { carried }, nodes.last, sums);
+    add(half, end, nodes.end, sums);
+    add(half, -(ring + carried + end), nodes.origin, sums);
 }
 
 /// Writes rows, slot by slot, and adds up forces.
@@ -120,70 +160,110 @@ pub(super) struct Keep<'a, T: Scalar, S: Simd, R> {
     /// The tetrahedra of a batch: its first slot, and how many there are.
     pub(super) batch: (usize, usize),
     pub(super) places: [Deformed<T::Lanes<S>>; LONGEST],
-    pub(super) simd: S,
+    pub(super) forces: KeptVectors<T, 3>,
 }
 
 impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
         self.batch = (slot - place, place + 1);
         self.places[place].edges = edges[0];
-        self.places[place].f = self.record.deformation(simd, slot, &edges[0]);
+        self.places[place].f = self.record.deformation(part, slot, &edges[0]);
     }
 
     #[inline(always)]
-    fn end(&mut self, nodes: &BatchNodes<'_>) {
+    fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
         let (slot, length) = self.batch;
         for place in &mut self.places[..length] {
             place.r = self.record.rotation::<S>(&place.f);
         }
-        let mut forces = [self.places[0].edges; LONGEST];
         let values = self.values[(slot - self.first) * self.block..].chunks_exact_mut(self.block);
-        for (number, ((forces, place), values)) in forces.iter_mut().zip(&self.places[..length]).zip(values).enumerate()
-        {
-            *forces = self.record.record(self.simd, slot + number, place, values);
+        for (number, (place, values)) in self.places[..length].iter().zip(values).enumerate() {
+            keep::<T, S>(part, self.record.record(part, slot + number, place, values), &mut self.forces[number]);
         }
-        add_up(&forces, nodes, self.sums);
+        add_up_halves(&self.forces, part, nodes, self.sums);
     }
 }
 
 /// Adds up blocks as [`Scatter`] does forces, but that those of the origin do not follow from the others.
-pub(super) struct ScatterBlocks<'a, T: Scalar, S: Simd, E> {
+pub(super) struct ScatterBlocks<'a, T: Scalar, E> {
     pub(super) element: &'a E,
     pub(super) sums: &'a mut [PatchRows<T>; 2],
-    /// The blocks of a batch.
-    pub(super) blocks: [[Sym3<T::Lanes<S>>; 4]; LONGEST],
+    /// The blocks of a batch, two vectors each.
+    pub(super) blocks: KeptVectors<T, 8>,
 }
 
-impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, S, E> {
+impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, E> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
-        self.blocks[place] = self.element.blocks(simd, slot, &edges[0]);
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+        let blocks = self.element.blocks(part, slot, &edges[0]);
+        let kept = &mut self.blocks[place];
+        for corner in 0..4 {
+            let Sym3 { xx, yy, zz, xy, xz, yz } = blocks[corner];
+            store_vector(part, Vec3::new(xx, yy, zz), &mut kept[2 * corner]);
+            store_vector(part, Vec3::new(xy, xz, yz), &mut kept[2 * corner + 1]);
+        }
     }
 
     #[inline(always)]
-    fn end(&mut self, nodes: &BatchNodes<'_>) {
-        let [mut origin, mut end, kept, mut carried] = self.blocks[0];
-        if !nodes.is_closed {
-            add_block(kept, &nodes.ring[..T::LANES], self.sums);
+    fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
+        for half in nodes.halves::<T, S>(part) {
+            add_up_blocks(&self.blocks, half, nodes, self.sums);
         }
-        for (blocks, from) in self.blocks.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
-            let [on_origin, on_end, on_ring, next] = *blocks;
-            origin = origin + on_origin;
-            end = end + on_end;
-            add_block(carried + on_ring, from, self.sums);
-            carried = next;
-        }
-        add_block(if nodes.is_closed { kept + carried } else { carried }, nodes.last, self.sums);
-        add_block(end, nodes.end, self.sums);
-        add_block(origin, nodes.origin, self.sums);
     }
 }
 
+/// Adds up the blocks of half a batch.
 #[inline(always)]
-fn add_block<T: Scalar, S: Simd, L: Lanes<T, S>>(block: Sym3<L>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
-    add(Vec3::new(block.xx, block.yy, block.zz), nodes, &mut sums[0]);
-    add(Vec3::new(block.xy, block.xz, block.yz), nodes, &mut sums[1]);
+fn add_up_blocks<T: Scalar, S: Simd>(
+    blocks: &KeptVectors<T, 8>,
+    half: Part<S>,
+    nodes: &BatchNodes<'_>,
+    sums: &mut [PatchRows<T>; 2],
+) {
+    let [mut origin, mut end, kept, mut carried] = HalfBlock::of_all(half, &blocks[0]);
+    if !nodes.is_closed {
+        kept.add(half, &nodes.ring[..T::LANES], sums);
+    }
+    for (blocks, from) in blocks.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
+        let [on_origin, on_end, on_ring, next] = HalfBlock::of_all(half, blocks);
+        origin = origin.plus(on_origin);
+        end = end.plus(on_end);
+        carried.plus(on_ring).add(half, from, sums);
+        carried = next;
+    }
+    let last = if nodes.is_closed { kept.plus(carried) } else { carried };
+    last.add(half, nodes.last, sums);
+    end.add(half, nodes.end, sums);
+    origin.add(half, nodes.origin, sums);
+}
+
+/// Half a batch of blocks: xx, yy, zz, then xy, xz, yz.
+#[derive(Clone, Copy)]
+struct HalfBlock<R>([Vec3<R>; 2]);
+
+impl<R: Real> HalfBlock<R> {
+    /// Those of the four corners.
+    #[inline(always)]
+    fn of_all<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 8]) -> [Self; 4] {
+        [Self::of(half, kept, 0), Self::of(half, kept, 1), Self::of(half, kept, 2), Self::of(half, kept, 3)]
+    }
+
+    #[inline(always)]
+    fn of<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 8], corner: usize) -> Self {
+        Self([load_vector::<T, S>(half, &kept[2 * corner]), load_vector::<T, S>(half, &kept[2 * corner + 1])])
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
+    }
+
+    #[inline(always)]
+    fn add<T: Scalar<Half<S> = R>, S: Simd>(self, half: Part<S>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
+        add(half, self.0[0], nodes, &mut sums[0]);
+        add(half, self.0[1], nodes, &mut sums[1]);
+    }
 }
 
 /// Keeps the largest number.
@@ -194,23 +274,24 @@ pub(super) struct Largest<'a, M, V> {
 
 impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
     #[inline(always)]
-    fn tetrahedron(&mut self, simd: S, slot: usize, _place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
-        self.value = self.value.max(self.measure.measure(simd, slot, &edges[0]));
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, _place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+        self.value = self.value.max(self.measure.measure(part, slot, &edges[0]));
     }
 }
 
 /// Numbers of the nodes of all lanes, modulo the size of a patch: the compiler sees that they are good.
 #[inline(always)]
-pub(super) fn indices(nodes: &[u32], lanes: usize) -> [u32; MAX_LANES] {
+pub(super) fn indices<T: Scalar, S: Simd, L: Lanes<T, S>>(part: Part<S>, nodes: &[u32]) -> [u32; MAX_LANES] {
+    let nodes = part.of::<T, L, _>(nodes);
     let mut indices = [0; MAX_LANES];
-    for lane in 0..lanes {
+    for lane in 0..L::COUNT {
         indices[lane] = nodes[lane] % PATCH_NODES as u32;
     }
     indices
 }
 
 #[inline(always)]
-fn add<T: Scalar, S: Simd, L: Lanes<T, S>>(force: Vec3<L>, nodes: &[u32], sums: &mut PatchRows<T>) {
-    let indices = indices(nodes, T::LANES);
-    L::scatter_add(force.to_array(), &indices[..T::LANES], sums);
+fn add<T: Scalar, S: Simd>(half: Part<S>, force: Vec3<T::Half<S>>, nodes: &[u32], sums: &mut PatchRows<T>) {
+    let indices = indices::<T, S, T::Half<S>>(half, nodes);
+    T::Half::<S>::scatter_add(force.to_array(), &indices[..T::Half::<S>::COUNT], sums);
 }

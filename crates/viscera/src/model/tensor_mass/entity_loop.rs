@@ -4,16 +4,14 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::{Simd, dispatch};
-
 use super::entity::{Corner, Entity, MAX_COLUMNS};
 use super::tensors::TetTensors;
-use crate::math::{Dual, Lanes, Real, Scalar, Vec3, baseline, dispatch_level, prefetch};
+use crate::math::{Dual, Lanes, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level, prefetch};
 use crate::model::BlockSink;
 use crate::model::block_sink::{add_block_column, unit_displacement};
 use crate::model::block_table::BlockTable;
 use crate::model::sections::{SectionSums, Sections};
-use crate::model::tet_loop::scatter_corner;
+use crate::model::tet_loop::scatter_corners;
 
 /// All entities of one kind, with the sums of the tensors of the tetrahedra that touch them.
 #[derive(Debug)]
@@ -135,25 +133,34 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
         for batch in batches {
             self.prefetch(batch + AHEAD);
             let (nodes, stored) = self.block(batch);
-            let corners = gather_corners::<T, S, NODES>(simd, nodal, nodes);
-            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
-            let linear = E::linear(&c, &corners);
-            let all_linear = ADAPTIVE && nodes.iter().all(|&node| nodal[node as usize][3] == T::ZERO);
-            let nonlinear = if all_linear { None } else { E::nonlinear(&c, &corners) };
-            let mut forces = linear.unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
-            if let Some(nonlinear) = nonlinear {
-                for node in 0..NODES {
-                    forces[node] = if ADAPTIVE {
-                        nonlinear[node].mul_add(corners[node].weight, forces[node])
-                    } else {
-                        forces[node] + nonlinear[node]
-                    };
+            for part in Part::all::<T>(simd) {
+                let corners = gather_corners::<T, S, NODES>(part, nodal, nodes);
+                let c = load_columns::<T, S>(part, stored, E::COLUMNS);
+                let linear = E::linear(&c, &corners);
+                let all_linear = ADAPTIVE && Self::are_linear(part, nodes, nodal);
+                let nonlinear = if all_linear { None } else { E::nonlinear(&c, &corners) };
+                let mut forces = linear.unwrap_or([Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]);
+                if let Some(nonlinear) = nonlinear {
+                    for node in 0..NODES {
+                        forces[node] = if ADAPTIVE {
+                            nonlinear[node].mul_add(corners[node].weight, forces[node])
+                        } else {
+                            forces[node] + nonlinear[node]
+                        };
+                    }
+                } else if linear.is_none() {
+                    continue;
                 }
-            } else if linear.is_none() {
-                continue;
+                scatter_corners::<T, S, NODES>(part, &forces, self.rows(batch), out);
             }
-            scatter_corners(simd, forces, self.rows(batch), out);
         }
+    }
+
+    /// Whether all corners of a batch are linear.
+    #[inline(always)]
+    fn are_linear<S: Simd>(part: Part<S>, nodes: &[u32], nodal: &[[T; 4]]) -> bool {
+        let own = |nodes| part.of::<T, T::Lanes<S>, _>(nodes).iter();
+        nodes.chunks_exact(T::LANES).flat_map(own).all(|&node| nodal[node as usize][3] == T::ZERO)
     }
 
     /// Nodes and stored numbers of a batch.
@@ -196,10 +203,13 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     ) {
         for batch in batches {
             let (nodes, stored) = self.block(batch);
-            let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
-            let along = gather_corners::<T, S, NODES>(simd, direction, nodes);
-            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
-            scatter_corners(simd, forces_along::<_, E, NODES>(&c, &at, &along), self.rows(batch), out);
+            for part in Part::all::<T>(simd) {
+                let at = gather_corners::<T, S, NODES>(part, nodal, nodes);
+                let along = gather_corners::<T, S, NODES>(part, direction, nodes);
+                let c = load_columns::<T, S>(part, stored, E::COLUMNS);
+                let forces = forces_along::<_, E, NODES>(&c, &at, &along);
+                scatter_corners::<T, S, NODES>(part, &forces, self.rows(batch), out);
+            }
         }
     }
 
@@ -211,19 +221,22 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
     #[inline(always)]
     fn add_blocks_with<S: Simd>(&self, simd: S, nodal: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
         for (block, (nodes, stored)) in self.nodes.blocks().zip(self.stored.blocks()).enumerate() {
-            let at = gather_corners::<T, S, NODES>(simd, nodal, nodes);
-            let c = load_columns::<T, S>(simd, stored, E::COLUMNS);
-            for corner in 0..NODES {
-                let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]; 3];
-                for axis in 0..3 {
-                    let mut along = at;
-                    let unit = unit_displacement::<T, S, NODES>(simd, corner, axis);
-                    for node in 0..NODES {
-                        along[node].u = unit[node];
+            let elements = self.nodes.rows() - block * T::LANES;
+            for part in Part::all::<T>(simd) {
+                let at = gather_corners::<T, S, NODES>(part, nodal, nodes);
+                let c = load_columns::<T, S>(part, stored, E::COLUMNS);
+                for corner in 0..NODES {
+                    let mut columns = [[Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); NODES]; 3];
+                    for axis in 0..3 {
+                        let mut along = at;
+                        let unit = unit_displacement::<T, S, NODES>(simd, corner, axis);
+                        for node in 0..NODES {
+                            along[node].u = unit[node];
+                        }
+                        columns[axis] = forces_along::<_, E, NODES>(&c, &at, &along);
                     }
-                    columns[axis] = forces_along::<_, E, NODES>(&c, &at, &along);
+                    add_block_column::<T, S, NODES>(part, &columns, nodes, corner, elements, sink);
                 }
-                add_block_column::<T, S, NODES>(&columns, nodes, corner, self.nodes.rows() - block * T::LANES, sink);
             }
         }
     }
@@ -252,7 +265,7 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
 }
 
 /// How many batches a loop looks ahead.
-const AHEAD: usize = 4;
+const AHEAD: usize = 2;
 
 /// How many batches share out as many times their lanes of entities that follow each other.
 const APART: usize = 16;
@@ -268,25 +281,25 @@ fn row(entity: usize, count: usize, lanes: usize) -> usize {
 }
 
 #[inline(always)]
-fn load_columns<T: Scalar, S: Simd>(simd: S, block: &[T], columns: usize) -> [T::Lanes<S>; MAX_COLUMNS] {
-    let mut c = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_COLUMNS];
+fn load_columns<T: Scalar, S: Simd>(part: Part<S>, block: &[T], columns: usize) -> [T::Lanes<S>; MAX_COLUMNS] {
+    let mut c = [T::Lanes::<S>::splat(part.simd, T::ZERO); MAX_COLUMNS];
     for column in 0..columns {
-        c[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        c[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
     }
     c
 }
 
 #[inline(always)]
 fn gather_corners<T: Scalar, S: Simd, const NODES: usize>(
-    simd: S,
+    part: Part<S>,
     nodal: &[[T; 4]],
     nodes: &[u32],
 ) -> [Corner<T::Lanes<S>>; NODES] {
-    let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+    let zero = T::Lanes::<S>::splat(part.simd, T::ZERO);
     let mut corners = [Corner { u: Vec3::splat(zero), weight: zero }; NODES];
     for node in 0..NODES {
-        let at = &nodes[node * T::LANES..(node + 1) * T::LANES];
-        let [x, y, z, weight] = T::Lanes::<S>::gather(simd, nodal, at);
+        let at = part.of::<T, T::Lanes<S>, _>(&nodes[node * T::LANES..(node + 1) * T::LANES]);
+        let [x, y, z, weight] = T::Lanes::<S>::gather(part.simd, nodal, at);
         corners[node] = Corner { u: Vec3::new(x, y, z), weight };
     }
     corners
@@ -329,16 +342,4 @@ fn dual_corners<R: Real, const NODES: usize>(
         };
     }
     corners
-}
-
-#[inline(always)]
-fn scatter_corners<T: Scalar, S: Simd, const NODES: usize>(
-    _simd: S,
-    forces: [Vec3<T::Lanes<S>>; NODES],
-    nodes: &[u32],
-    out: &mut [[T; 4]],
-) {
-    for node in 0..NODES {
-        scatter_corner::<T, S>(forces[node], nodes, node, out);
-    }
 }

@@ -6,16 +6,14 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use fearless_simd::{Simd, dispatch};
-
 use super::super::block_sink::{add_block_column, unit_displacement};
 use super::super::block_table::BlockTable;
 use super::super::sections::{SectionScratch, Sections};
-use super::super::tet_loop::{gather_corner, scatter_corner};
+use super::super::tet_loop::{gather_corner, scatter_corners};
 use super::super::{BlockSink, ForceModel, MeanForces, ModelError, Scratch};
 use super::{TotalLagrangian, hex_mean};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline, dispatch_level};
+use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::mesh::{GaussRule, HexMesh};
 
 /// Numbers stored for a Gauss point: eight gradients and a volume.
@@ -92,14 +90,13 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
     ) {
         for batch in batches {
             let (nodes, points) = (self.corners.block(batch), self.points.block(batch));
-            let parameters = self.parameters.block(batch);
-            let parameters = load_parameters::<T, S, L>(simd, parameters);
-            let place = gather_corners(simd, x, nodes);
-            let direction = if TANGENT { gather_corners(simd, dx, nodes) } else { place };
-            let forces = element_forces::<T, S, L, TANGENT>(simd, &parameters, points, &place, &direction);
             let rows = self.sections.rows(batch * 8 * T::LANES..(batch + 1) * 8 * T::LANES);
-            for corner in 0..8 {
-                scatter_corner::<T, S>(forces[corner], rows, corner, out);
+            for part in Part::all::<T>(simd) {
+                let parameters = load_parameters::<T, S, L>(part, self.parameters.block(batch));
+                let place = gather_corners(part, x, nodes);
+                let direction = if TANGENT { gather_corners(part, dx, nodes) } else { place };
+                let forces = element_forces::<T, S, L, TANGENT>(part, &parameters, points, &place, &direction);
+                scatter_corners::<T, S, 8>(part, &forces, rows, out);
             }
         }
     }
@@ -115,15 +112,18 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
     fn add_blocks_with<S: Simd>(&self, simd: S, x: &[[T; 4]], sink: &mut dyn BlockSink<T>) {
         let blocks = self.corners.blocks().zip(self.points.blocks()).zip(self.parameters.blocks());
         for (block, ((nodes, points), parameters)) in blocks.enumerate() {
-            let parameters = load_parameters::<T, S, L>(simd, parameters);
-            let place = gather_corners(simd, x, nodes);
-            for corner in 0..8 {
-                let mut columns = [place; 3];
-                for axis in 0..3 {
-                    let direction = unit_displacement::<T, S, 8>(simd, corner, axis);
-                    columns[axis] = element_forces::<T, S, L, true>(simd, &parameters, points, &place, &direction);
+            let elements = self.corners.rows() - block * T::LANES;
+            for part in Part::all::<T>(simd) {
+                let parameters = load_parameters::<T, S, L>(part, parameters);
+                let place = gather_corners(part, x, nodes);
+                for corner in 0..8 {
+                    let mut columns = [place; 3];
+                    for axis in 0..3 {
+                        let unit = unit_displacement::<T, S, 8>(simd, corner, axis);
+                        columns[axis] = element_forces::<T, S, L, true>(part, &parameters, points, &place, &unit);
+                    }
+                    add_block_column::<T, S, 8>(part, &columns, nodes, corner, elements, sink);
                 }
-                add_block_column::<T, S, 8>(&columns, nodes, corner, self.corners.rows() - block * T::LANES, sink);
             }
         }
     }
@@ -133,10 +133,13 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
 const MAX_PARAMETERS: usize = 8;
 
 #[inline(always)]
-pub(super) fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(simd: S, block: &[T]) -> [T::Lanes<S>; MAX_PARAMETERS] {
-    let mut parameters = [T::Lanes::<S>::splat(simd, T::ZERO); MAX_PARAMETERS];
+pub(super) fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(
+    part: Part<S>,
+    block: &[T],
+) -> [T::Lanes<S>; MAX_PARAMETERS] {
+    let mut parameters = [T::Lanes::<S>::splat(part.simd, T::ZERO); MAX_PARAMETERS];
     for column in 0..L::PARAMETERS.len() {
-        parameters[column] = T::Lanes::<S>::load(simd, &block[column * T::LANES..]);
+        parameters[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
     }
     parameters
 }
@@ -144,19 +147,19 @@ pub(super) fn load_parameters<T: Scalar, S: Simd, L: LawFamily>(simd: S, block: 
 /// Forces on the corners, or with `TANGENT` their derivative along `direction`.
 #[inline(always)]
 fn element_forces<T: Scalar, S: Simd, L: LawFamily, const TANGENT: bool>(
-    simd: S,
+    part: Part<S>,
     parameters: &[T::Lanes<S>; MAX_PARAMETERS],
     points: &[T],
     place: &[Vec3<T::Lanes<S>>; 8],
     direction: &[Vec3<T::Lanes<S>>; 8],
 ) -> [Vec3<T::Lanes<S>>; 8] {
     let law = L::at(&parameters[..L::PARAMETERS.len()]);
-    let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+    let mut forces = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); 8];
     for point in points.chunks_exact(POINT * T::LANES) {
-        let gradients = load_gradients::<T, S>(simd, point);
+        let gradients = load_gradients::<T, S>(part, point);
         let f = deformation(place, &gradients);
         let stress = if TANGENT { law.tangent(&f, &deformation(direction, &gradients)) } else { law.stress(&f) };
-        let stress = stress * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
+        let stress = stress * T::Lanes::<S>::load(part, &point[24 * T::LANES..]);
         for corner in 0..8 {
             forces[corner] += stress * gradients[corner];
         }
@@ -166,23 +169,23 @@ fn element_forces<T: Scalar, S: Simd, L: LawFamily, const TANGENT: bool>(
 
 #[inline(always)]
 pub(in crate::model) fn gather_corners<T: Scalar, S: Simd>(
-    simd: S,
+    part: Part<S>,
     x: &[[T; 4]],
     nodes: &[u32],
 ) -> [Vec3<T::Lanes<S>>; 8] {
-    let mut corners = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+    let mut corners = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); 8];
     for corner in 0..8 {
-        corners[corner] = gather_corner(simd, x, nodes, corner);
+        corners[corner] = gather_corner(part, x, nodes, corner);
     }
     corners
 }
 
 #[inline(always)]
-pub(in crate::model) fn load_gradients<T: Scalar, S: Simd>(simd: S, point: &[T]) -> [Vec3<T::Lanes<S>>; 8] {
-    let mut gradients = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+pub(in crate::model) fn load_gradients<T: Scalar, S: Simd>(part: Part<S>, point: &[T]) -> [Vec3<T::Lanes<S>>; 8] {
+    let mut gradients = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); 8];
     for corner in 0..8 {
         for axis in 0..3 {
-            gradients[corner][axis] = T::Lanes::<S>::load(simd, &point[(3 * corner + axis) * T::LANES..]);
+            gradients[corner][axis] = T::Lanes::<S>::load(part, &point[(3 * corner + axis) * T::LANES..]);
         }
     }
     gradients

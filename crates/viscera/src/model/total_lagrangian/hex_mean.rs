@@ -7,14 +7,12 @@
 
 use std::ops::Range;
 
-use fearless_simd::Simd;
-
 use super::super::sections::SectionScratch;
-use super::super::tet_loop::scatter_corner;
+use super::super::tet_loop::scatter_corners;
 use super::super::{MeanForces, Scratch};
 use super::hex::{HexLoop, POINT, deformation, gather_corners, load_gradients, load_parameters};
 use crate::material::{Law, LawFamily, StrainMeasure, green_strain};
-use crate::math::{Lanes, Mat3, Scalar, Vec3, baseline};
+use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline};
 
 /// Whether the law is one of those.
 pub(super) fn keeps_energy<L: LawFamily>() -> bool {
@@ -39,24 +37,24 @@ impl<T: Scalar, L: LawFamily> HexLoop<T, L> {
         let half = T::Lanes::<S>::splat(simd, T::from_f64(0.5));
         for batch in batches {
             let nodes = self.corners.block(batch);
-            let [from, to] = [from, to].map(|places| gather_corners::<T, S>(simd, places, nodes));
-            let parameters = load_parameters::<T, S, L>(simd, self.parameters.block(batch));
-            let law = L::at(&parameters[..L::PARAMETERS.len()]);
-            let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
-            for point in self.points.block(batch).chunks_exact(POINT * T::LANES) {
-                let gradients = load_gradients::<T, S>(simd, point);
-                let [before, after] = [from, to].map(|places| deformation(&places, &gradients));
-                let strain = (green_strain(&before) + green_strain(&after)) * half;
-                // At F = I the derivative of P along a symmetric dF is S(dF), for S is linear.
-                let second = law.tangent(&before.identity_like(), &Mat3::from(strain));
-                let stress = (before + after) * half * second * T::Lanes::<S>::load(simd, &point[24 * T::LANES..]);
-                for corner in 0..8 {
-                    forces[corner] += stress * gradients[corner];
-                }
-            }
             let rows = self.sections.rows(batch * 8 * T::LANES..(batch + 1) * 8 * T::LANES);
-            for corner in 0..8 {
-                scatter_corner::<T, S>(forces[corner], rows, corner, out);
+            for part in Part::all::<T>(simd) {
+                let [from, to] = [from, to].map(|places| gather_corners::<T, S>(part, places, nodes));
+                let parameters = load_parameters::<T, S, L>(part, self.parameters.block(batch));
+                let law = L::at(&parameters[..L::PARAMETERS.len()]);
+                let mut forces = [Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO)); 8];
+                for point in self.points.block(batch).chunks_exact(POINT * T::LANES) {
+                    let gradients = load_gradients::<T, S>(part, point);
+                    let [before, after] = [from, to].map(|places| deformation(&places, &gradients));
+                    let strain = (green_strain(&before) + green_strain(&after)) * half;
+                    // At F = I the derivative of P along a symmetric dF is S(dF), for S is linear.
+                    let second = law.tangent(&before.identity_like(), &Mat3::from(strain));
+                    let stress = (before + after) * half * second * T::Lanes::<S>::load(part, &point[24 * T::LANES..]);
+                    for corner in 0..8 {
+                        forces[corner] += stress * gradients[corner];
+                    }
+                }
+                scatter_corners::<T, S, 8>(part, &forces, rows, out);
             }
         }
     }
