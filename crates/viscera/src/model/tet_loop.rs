@@ -351,7 +351,7 @@ pub(crate) fn scatter_corners<T: Scalar, S: Simd, const CORNERS: usize>(
 ) {
     let mut kept = [[[T::ZERO; MAX_LANES]; 3]; CORNERS];
     for corner in 0..CORNERS {
-        store_vector(part, forces[corner], &mut kept[corner]);
+        store_vector(part.simd, forces[corner], &mut kept[corner]);
     }
     for half in part.halves::<T>() {
         for corner in 0..CORNERS {

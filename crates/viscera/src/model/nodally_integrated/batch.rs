@@ -95,7 +95,7 @@ impl<'a, T: Scalar> Batch<'a, T> {
         let [a, b, c] = stress.columns;
         let mut kept = [[[T::ZERO; MAX_LANES]; 3]; 4];
         for (vector, kept) in [a, b, c, pull].into_iter().zip(&mut kept) {
-            store_vector(part, vector, kept);
+            store_vector(part.simd, vector, kept);
         }
         for half in part.halves::<T>() {
             let (a, b) = (load_vector::<T, S>(half, &kept[0]), load_vector::<T, S>(half, &kept[1]));

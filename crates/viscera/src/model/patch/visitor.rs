@@ -85,7 +85,7 @@ pub(super) struct Scatter<'a, T: Scalar, F> {
 impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, F> {
     #[inline(always)]
     fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
-        keep::<T, S>(part, self.element.forces(part, slot, edges), &mut self.forces[place]);
+        keep::<T, S>(part.simd, self.element.forces(part, slot, edges), &mut self.forces[place]);
     }
 
     #[inline(always)]
@@ -98,9 +98,9 @@ impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T
 pub(super) type KeptVectors<T, const VECTORS: usize> = [[Halving<T, 3>; VECTORS]; LONGEST];
 
 #[inline(always)]
-fn keep<T: Scalar, S: Simd>(part: Part<S>, forces: Mat3<T::Lanes<S>>, kept: &mut [Halving<T, 3>; 3]) {
+fn keep<T: Scalar, S: Simd>(simd: S, forces: Mat3<T::Lanes<S>>, kept: &mut [Halving<T, 3>; 3]) {
     for corner in 0..3 {
-        store_vector(part, forces.columns[corner], &mut kept[corner]);
+        store_vector(simd, forces.columns[corner], &mut kept[corner]);
     }
 }
 
@@ -179,7 +179,7 @@ impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
         }
         let values = self.values[(slot - self.first) * self.block..].chunks_exact_mut(self.block);
         for (number, (place, values)) in self.places[..length].iter().zip(values).enumerate() {
-            keep::<T, S>(part, self.record.record(part, slot + number, place, values), &mut self.forces[number]);
+            keep::<T, S>(part.simd, self.record.record(part, slot + number, place, values), &mut self.forces[number]);
         }
         add_up_halves(&self.forces, part, nodes, self.sums);
     }
@@ -200,8 +200,8 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
         let kept = &mut self.blocks[place];
         for corner in 0..4 {
             let Sym3 { xx, yy, zz, xy, xz, yz } = blocks[corner];
-            store_vector(part, Vec3::new(xx, yy, zz), &mut kept[2 * corner]);
-            store_vector(part, Vec3::new(xy, xz, yz), &mut kept[2 * corner + 1]);
+            store_vector(part.simd, Vec3::new(xx, yy, zz), &mut kept[2 * corner]);
+            store_vector(part.simd, Vec3::new(xy, xz, yz), &mut kept[2 * corner + 1]);
         }
     }
 
