@@ -41,7 +41,7 @@ impl BatchNodes<'_> {
 }
 
 /// How many slots a loop looks ahead.
-const AHEAD: usize = 2;
+const AHEAD: usize = 4;
 
 /// Who knows the forces of the tetrahedra of a slot.
 pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {

@@ -265,7 +265,7 @@ impl<T: Scalar, E: Entity<NODES>, const NODES: usize> EntityLoop<T, E, NODES> {
 }
 
 /// How many batches a loop looks ahead.
-const AHEAD: usize = 2;
+const AHEAD: usize = 4;
 
 /// How many batches share out as many times their lanes of entities that follow each other.
 const APART: usize = 16;
