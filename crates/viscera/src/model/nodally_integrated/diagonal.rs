@@ -8,7 +8,10 @@ use super::batch::{Batch, Point, load_gradient};
 use super::points::NodalPoints;
 use super::tangent::load_deformation;
 use crate::material::LawFamily;
-use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level};
+use crate::math::{
+    HalfLanes, Halving, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level,
+    load_vector, store_vector,
+};
 use crate::model::Scratch;
 use crate::model::sections::SectionScratch;
 
@@ -25,36 +28,35 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_diagonal_with<S: Simd>(&self, simd: S, kept: &[T], batches: Range<usize>, out: &mut [[T; 4]]) {
+        let mut kept_forms = [[[T::ZERO; MAX_LANES]; 3]; 12];
         for number in batches {
             for part in Part::all::<T>(simd) {
                 let zero = T::Lanes::<S>::splat(simd, T::ZERO);
                 let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
                 let forms = forms::<_, L>(&point, &load_deformation::<T, S>(part, kept, number), zero);
-                let mut kept = [[[T::ZERO; MAX_LANES]; 6]; 6];
-                for (form, kept) in forms.into_iter().zip(&mut kept) {
-                    let Sym3 { xx, yy, zz, xy, xz, yz } = form;
-                    [xx, yy, zz, xy, xz, yz]
-                        .into_iter()
-                        .zip(kept)
-                        .for_each(|(number, kept)| number.store(Part::first(simd), kept));
+                for i in 0..6 {
+                    let Sym3 { xx, yy, zz, xy, xz, yz } = forms[i];
+                    store_vector(simd, Vec3::new(xx, yy, zz), &mut kept_forms[2 * i]);
+                    store_vector(simd, Vec3::new(xy, xz, yz), &mut kept_forms[2 * i + 1]);
                 }
                 for half in part.halves::<T>() {
-                    let within = half.within::<T>();
-                    let forms = kept.map(|kept| {
-                        let [xx, yy, zz, xy, xz, yz] = [0, 1, 2, 3, 4, 5].map(|i| T::Half::<S>::load(within, &kept[i]));
-                        Sym3 { xx, yy, zz, xy, xz, yz }
-                    });
-                    spread(half, self.batch(number), forms, out);
+                    spread(half, self.batch(number), &kept_forms, out);
                 }
             }
         }
     }
 }
 
-/// Adds what forms make of the gradients of half a batch, and its springs.
+/// Adds what forms make of the gradients of half a batch, and its springs. The forms are two vectors each.
 #[inline(always)]
-fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, forms: [Sym3<T::Half<S>>; 6], out: &mut [[T; 4]]) {
+fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, kept: &[Halving<T, 3>; 12], out: &mut [[T; 4]]) {
     let zero = T::Half::<S>::splat(half.simd, T::ZERO);
+    let mut forms = [Sym3::diagonal(zero); 6];
+    for i in 0..6 {
+        let (on_axes, apart) = (load_vector(half, &kept[2 * i]), load_vector(half, &kept[2 * i + 1]));
+        let (Vec3 { x: xx, y: yy, z: zz }, Vec3 { x: xy, y: xz, z: yz }) = (on_axes, apart);
+        forms[i] = Sym3 { xx, yy, zz, xy, xz, yz };
+    }
     // All springs of a point hold the point itself; the others have theirs from points of their own.
     let mut spring = zero;
     for (_, _, one) in batch.entries() {
@@ -63,7 +65,12 @@ fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, forms: [Sym3<T
     let others = batch.rows.chunks_exact(T::LANES).zip(batch.gradients.chunks_exact(3 * T::LANES));
     for (rows, gradient) in others {
         let form = Sym3::square(load_gradient::<T, S, T::Half<S>>(half, gradient));
-        let [xx, yy, zz, xy, xz, yz] = forms.map(|of| of.contract(form));
+        // One by one: `map` of six is a call, which loses the instruction set (a tenth of a step).
+        let mut values = [zero; 6];
+        for i in 0..6 {
+            values[i] = forms[i].contract(form);
+        }
+        let [xx, yy, zz, xy, xz, yz] = values;
         let on_axes = Vec3::new(xx, yy, zz) + Vec3::splat(spring);
         spring = zero;
         add_rows::<T, S>(half, [on_axes, Vec3::new(xy, xz, yz)], rows, out);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::batch::{Batch, MAX_PARAMETERS, Point};
 use super::rest::{Neighbour, Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
+use crate::math::{MAX_LANES, Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::block_table::BlockTable;
 use crate::model::sections::{SectionScratch, Sections};
@@ -186,12 +186,13 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
+        let mut kept = [[[T::ZERO; MAX_LANES]; 3]; 4];
         for number in batches {
             let batch = self.batch(number);
             for part in Part::all::<T>(simd) {
                 let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
                 let (f, pull) = batch.around::<S>(part, x);
-                batch.spread::<S>(part, point.stress::<L>(&f), pull, out);
+                batch.spread::<S>(part, (point.stress::<L>(&f), pull), &mut kept, out);
             }
         }
     }

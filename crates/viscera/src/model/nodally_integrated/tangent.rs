@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::batch::{Batch, Point, load_gradient};
 use super::points::NodalPoints;
 use crate::material::LawFamily;
-use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::model::block_sink::add_block;
 use crate::model::sections::SectionScratch;
 use crate::model::{BlockSink, Scratch};
@@ -77,13 +77,14 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_product_with<S: Simd>(&self, simd: S, kept: &[T], dx: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
+        let mut kept_vectors = [[[T::ZERO; MAX_LANES]; 3]; 4];
         for number in batches {
             let batch = self.batch(number);
             for part in Part::all::<T>(simd) {
                 let point = Point::<T::Lanes<S>>::load::<T, S, L>(part, self.constants.block(number));
                 let (df, pull) = batch.around::<S>(part, dx);
                 let f = load_deformation::<T, S>(part, kept, number);
-                batch.spread::<S>(part, point.tangent::<L>(&f, &df), pull, out);
+                batch.spread::<S>(part, (point.tangent::<L>(&f, &df), pull), &mut kept_vectors, out);
             }
         }
     }
