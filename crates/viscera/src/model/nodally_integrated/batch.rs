@@ -45,7 +45,7 @@ impl<R: Real> Point<R> {
     }
 }
 
-/// A mean of gradients, and a pull of springs.
+/// A mean of gradients, or a stress, and a pull of springs.
 pub(super) type Around<R> = (Mat3<R>, Vec3<R>);
 
 /// The entries of a batch of points.
@@ -88,7 +88,7 @@ impl<'a, T: Scalar> Batch<'a, T> {
     pub(super) fn spread<S: Simd>(
         self,
         part: Part<S>,
-        (stress, pull): (Mat3<T::Lanes<S>>, Vec3<T::Lanes<S>>),
+        (stress, pull): Around<T::Lanes<S>>,
         kept: &mut [Halving<T, 3>; 4],
         out: &mut [[T; 4]],
     ) {
