@@ -27,7 +27,7 @@ impl Machine {
 
     /// The peak in the precision of `T` [FLOP/s].
     pub fn flops<T: Scalar>(&self) -> f64 {
-        if size_of::<T>() == 4 { self.flops_f32 } else { self.flops_f64 }
+        if T::NAME == f32::NAME { self.flops_f32 } else { self.flops_f64 }
     }
 }
 

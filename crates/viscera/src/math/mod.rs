@@ -1,7 +1,6 @@
 //! Numbers, lanes, small vectors and matrices: one text for `f32`, `f64` and SIMD lanes.
 
 mod dual;
-mod halving;
 mod instruction_set;
 mod lanes;
 mod mat3;
@@ -13,7 +12,6 @@ mod sym3;
 mod vec3;
 
 pub use dual::Dual;
-pub(crate) use halving::{Halving, load_vector, store_vector};
 pub(crate) use instruction_set::baseline;
 pub use instruction_set::{Level, dispatch, dispatch_level, vectorize, with_level};
 pub use lanes::{HalfLanes, Lanes, MAX_LANES, Part, Scalar, Simd};

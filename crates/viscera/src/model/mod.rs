@@ -8,6 +8,7 @@ mod error;
 pub mod frequency;
 pub mod hybrid;
 mod kernel_bound;
+mod lane_vector;
 pub mod linear_tensor_mass;
 pub mod mass_spring;
 pub mod nodally_integrated;

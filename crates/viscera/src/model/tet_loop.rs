@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
+use super::lane_vector;
 use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
 use super::{BlockSink, ModelError, Scratch};
-use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, load_vector, store_vector};
+use crate::math::{HalfLanes, Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
 use crate::solver::Turn;
 
@@ -349,13 +350,13 @@ pub(crate) fn scatter_corners<T: Scalar, S: Simd, const CORNERS: usize>(
     nodes: &[u32],
     out: &mut [[T; 4]],
 ) {
-    let mut kept = [[[T::ZERO; MAX_LANES]; 3]; CORNERS];
+    let mut kept = [lane_vector::nothing(); CORNERS];
     for corner in 0..CORNERS {
-        store_vector(part.simd, forces[corner], &mut kept[corner]);
+        lane_vector::keep(part.simd, forces[corner], &mut kept[corner]);
     }
     for half in part.halves::<T>() {
         for corner in 0..CORNERS {
-            let force = load_vector::<T, S>(half, &kept[corner]);
+            let force = lane_vector::take_up::<T, S>(half, &kept[corner]);
             let nodes = half.of::<T, T::Half<S>, _>(&nodes[corner * T::LANES..(corner + 1) * T::LANES]);
             T::Half::<S>::scatter_add(force.to_array(), nodes, out);
         }

@@ -119,24 +119,25 @@ fn gather_and_scatter_add_lanes_that_share_a_node() {
 }
 
 #[inline(always)]
-fn lane_operations<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> [Vec<f64>; 6] {
+fn lane_operations<S: Simd>(part: Part<S>, a: &[f64], b: &[f64], out: &mut [[f64; 8]; 6]) {
     type Lane<S> = <f64 as Scalar>::Lanes<S>;
-    let part = Part::first(simd);
     let (a, b) = (Lane::<S>::load(part, a), Lane::<S>::load(part, b));
     let smaller = Lane::<S>::select(a.less_than(b), a, b);
-    [a.abs().sqrt(), a.min(b), a.max(b), a.abs().ln(), smaller, a.like(7.0)].map(|lanes| {
-        let mut values = vec![0.0; 8];
-        lanes.store(part, &mut values);
-        values
-    })
+    let results = [a.abs().sqrt(), a.min(b), a.max(b), a.abs().ln(), smaller, a.like(7.0)];
+    results.into_iter().zip(out).for_each(|(lanes, out)| lanes.store(part, out));
 }
 
 #[test]
 fn lanes_do_what_scalars_do() {
-    let (a, b) = ([1.5, -2.0, 0.25, 8.0, 1.5, -2.0, 0.25, 8.0], [2.0, -3.0, 0.5, -8.0, 1.0, 1.0, 1.0, 1.0]);
-    let [root, smaller, larger, logarithm, selected, seven] =
-        dispatch!(dispatch_level(), simd => lane_operations(simd, &a, &b));
-    for lane in 0..4 {
+    let (a, b) = ([1.5, -2.0, 0.25, 8.0, 3.0, -0.5, 6.0, -7.0], [2.0, -3.0, 0.5, -8.0, 1.0, 1.0, -1.0, 4.0]);
+    let mut out = [[0.0; 8]; 6];
+    dispatch!(dispatch_level(), simd => {
+        for part in Part::all::<f64>(simd) {
+            lane_operations(part, &a, &b, &mut out);
+        }
+    });
+    let [root, smaller, larger, logarithm, selected, seven] = out;
+    for lane in 0..8 {
         assert_eq!(root[lane], a[lane].abs().sqrt());
         assert_eq!(smaller[lane], f64::min(a[lane], b[lane]));
         assert_eq!(larger[lane], f64::max(a[lane], b[lane]));

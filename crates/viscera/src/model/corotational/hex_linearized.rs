@@ -6,10 +6,10 @@ use std::ops::Range;
 
 use super::hex::{CorotationalHexes, POINTS};
 use super::hooke::Hooke;
-use super::lane_vector::{load, store};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::model::BlockSink;
 use crate::model::block_sink::add_block;
+use crate::model::lane_vector::{load, store};
 use crate::model::total_lagrangian::hex::{POINT, deformation, gather_corners, load_gradients};
 
 /// Numbers of the turned gradients of a point.
@@ -93,7 +93,10 @@ impl<T: Scalar> CorotationalHexes<T> {
                     if p == q || !sink.keeps_diagonal_only() {
                         let mut block = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
                         for turned in row[..FIBRE * T::LANES].chunks_exact(GRADIENTS * T::LANES) {
-                            block += hooke.block(load(part, turned, 3 * p), load(part, turned, 3 * q));
+                            block += hooke.block(
+                                load(part, &turned[3 * p * T::LANES..]),
+                                load(part, &turned[3 * q * T::LANES..]),
+                            );
                         }
                         add_block::<T, S>(part, &block, nodes, [p, q], elements, sink);
                     }
@@ -106,6 +109,6 @@ impl<T: Scalar> CorotationalHexes<T> {
     #[inline(always)]
     fn load_turned_law<S: Simd>(&self, part: Part<S>, law: &[T], row: &[T]) -> Hooke<T::Lanes<S>> {
         let hooke = self.load_law(part, law);
-        Hooke { fibre: hooke.fibre.map(|(_, stiffness)| (load(part, row, FIBRE), stiffness)), ..hooke }
+        Hooke { fibre: hooke.fibre.map(|(_, stiffness)| (load(part, &row[FIBRE * T::LANES..]), stiffness)), ..hooke }
     }
 }

@@ -21,7 +21,6 @@ mod frequency;
 mod hex;
 mod hex_linearized;
 mod hooke;
-mod lane_vector;
 mod tet;
 mod warping;
 

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
-use super::lane_vector::{load, store};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, prefetch};
@@ -13,6 +12,7 @@ use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
+use crate::model::lane_vector::{load, store};
 use crate::model::patch::{Deformed, Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Patches, Scratch};
@@ -269,8 +269,9 @@ impl<T: Scalar, const FIBRED: bool> FrozenProduct<'_, T, FIBRED> {
         let len = T::LANES * if FIBRED { TURNED_FIBRED } else { TURNED };
         let row = &self.0[slot * len..][..len];
         let number = |column: usize| T::Lanes::<S>::load(part, &row[column * T::LANES..]);
-        let gradients = Mat3::from_columns(load(part, row, 0), load(part, row, 3), load(part, row, 6));
-        let fibre = if FIBRED { Some((load(part, row, FIBRE), number(FIBRE_RATIO))) } else { None };
+        let gradients =
+            Mat3::from_columns(load(part, row), load(part, &row[3 * T::LANES..]), load(part, &row[6 * T::LANES..]));
+        let fibre = if FIBRED { Some((load(part, &row[FIBRE * T::LANES..]), number(FIBRE_RATIO))) } else { None };
         Turned { gradients, ratio: number(RATIO), fibre }
     }
 }

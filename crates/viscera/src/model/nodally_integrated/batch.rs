@@ -1,7 +1,8 @@
 //! The entries of a batch of points, and what the law makes of them.
 
 use crate::material::{Law, LawFamily};
-use crate::math::{HalfLanes, Halving, Lanes, Mat3, Part, Real, Scalar, Simd, Vec3, load_vector, store_vector};
+use crate::math::{HalfLanes, Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
+use crate::model::lane_vector::{Kept, keep, load, take_up};
 use crate::model::tet_loop::gather_corner;
 
 /// The most parameters of a law.
@@ -76,7 +77,7 @@ impl<'a, T: Scalar> Batch<'a, T> {
         let (mut mean, mut pull) = (Mat3::from_columns(zero, zero, zero), zero);
         for (nodes, gradient, spring) in self.entries().skip(1) {
             let apart = gather_corner::<T, S>(part, v, nodes, 0) - own;
-            mean += apart.outer(load_gradient::<T, S, _>(part, gradient));
+            mean += apart.outer(load(part, gradient));
             pull += apart * T::Lanes::<S>::load(part, spring);
         }
         (mean, pull)
@@ -89,17 +90,17 @@ impl<'a, T: Scalar> Batch<'a, T> {
         self,
         part: Part<S>,
         (stress, pull): Around<T::Lanes<S>>,
-        kept: &mut [Halving<T, 3>; 4],
+        kept: &mut [Kept<T>; 4],
         out: &mut [[T; 4]],
     ) {
         let [a, b, c] = stress.columns;
-        store_vector(part.simd, a, &mut kept[0]);
-        store_vector(part.simd, b, &mut kept[1]);
-        store_vector(part.simd, c, &mut kept[2]);
-        store_vector(part.simd, pull, &mut kept[3]);
+        keep(part.simd, a, &mut kept[0]);
+        keep(part.simd, b, &mut kept[1]);
+        keep(part.simd, c, &mut kept[2]);
+        keep(part.simd, pull, &mut kept[3]);
         for half in part.halves::<T>() {
-            let (a, b) = (load_vector::<T, S>(half, &kept[0]), load_vector::<T, S>(half, &kept[1]));
-            let (c, pull) = (load_vector::<T, S>(half, &kept[2]), load_vector::<T, S>(half, &kept[3]));
+            let (a, b) = (take_up::<T, S>(half, &kept[0]), take_up::<T, S>(half, &kept[1]));
+            let (c, pull) = (take_up::<T, S>(half, &kept[2]), take_up::<T, S>(half, &kept[3]));
             self.spread_half::<S>(half, Mat3::from_columns(a, b, c), pull, out);
         }
     }
@@ -109,16 +110,10 @@ impl<'a, T: Scalar> Batch<'a, T> {
         let mut sum = pull;
         let gradients = self.gradients.chunks_exact(3 * T::LANES);
         for (rows, gradient) in self.rows.chunks_exact(T::LANES).zip(gradients).skip(1) {
-            let force = stress * load_gradient::<T, S, _>(half, gradient);
+            let force = stress * load(half, gradient);
             sum += force;
             T::Half::<S>::scatter_add(force.to_array(), half.of::<T, T::Half<S>, _>(rows), out);
         }
         T::Half::<S>::scatter_add((-sum).to_array(), half.of::<T, T::Half<S>, _>(&self.rows[..T::LANES]), out);
     }
-}
-
-#[inline(always)]
-pub(super) fn load_gradient<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, gradient: &[T]) -> Vec3<R> {
-    let component = |axis: usize| R::load(part, &gradient[axis * T::LANES..]);
-    Vec3::new(component(0), component(1), component(2))
 }

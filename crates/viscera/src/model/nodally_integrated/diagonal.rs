@@ -4,15 +4,13 @@
 
 use std::ops::Range;
 
-use super::batch::{Batch, Point, load_gradient};
+use super::batch::{Batch, Point};
 use super::points::NodalPoints;
 use super::tangent::load_deformation;
 use crate::material::LawFamily;
-use crate::math::{
-    HalfLanes, Halving, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level,
-    load_vector, store_vector,
-};
+use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level};
 use crate::model::Scratch;
+use crate::model::lane_vector::{Kept, keep, load, nothing, take_up};
 use crate::model::sections::SectionScratch;
 
 impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
@@ -28,7 +26,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_diagonal_with<S: Simd>(&self, simd: S, kept: &[T], batches: Range<usize>, out: &mut [[T; 4]]) {
-        let mut kept_forms = [[[T::ZERO; MAX_LANES]; 3]; 12];
+        let mut kept_forms = [nothing(); 12];
         for number in batches {
             for part in Part::all::<T>(simd) {
                 let zero = T::Lanes::<S>::splat(simd, T::ZERO);
@@ -36,8 +34,8 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
                 let forms = forms::<_, L>(&point, &load_deformation::<T, S>(part, kept, number), zero);
                 for i in 0..6 {
                     let Sym3 { xx, yy, zz, xy, xz, yz } = forms[i];
-                    store_vector(simd, Vec3::new(xx, yy, zz), &mut kept_forms[2 * i]);
-                    store_vector(simd, Vec3::new(xy, xz, yz), &mut kept_forms[2 * i + 1]);
+                    keep(simd, Vec3::new(xx, yy, zz), &mut kept_forms[2 * i]);
+                    keep(simd, Vec3::new(xy, xz, yz), &mut kept_forms[2 * i + 1]);
                 }
                 for half in part.halves::<T>() {
                     spread(half, self.batch(number), &kept_forms, out);
@@ -49,11 +47,11 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
 /// Adds what forms make of the gradients of half a batch, and its springs. The forms are two vectors each.
 #[inline(always)]
-fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, kept: &[Halving<T, 3>; 12], out: &mut [[T; 4]]) {
+fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, kept: &[Kept<T>; 12], out: &mut [[T; 4]]) {
     let zero = T::Half::<S>::splat(half.simd, T::ZERO);
     let mut forms = [Sym3::diagonal(zero); 6];
     for i in 0..6 {
-        let (on_axes, apart) = (load_vector(half, &kept[2 * i]), load_vector(half, &kept[2 * i + 1]));
+        let (on_axes, apart) = (take_up(half, &kept[2 * i]), take_up(half, &kept[2 * i + 1]));
         let (Vec3 { x: xx, y: yy, z: zz }, Vec3 { x: xy, y: xz, z: yz }) = (on_axes, apart);
         forms[i] = Sym3 { xx, yy, zz, xy, xz, yz };
     }
@@ -64,7 +62,7 @@ fn spread<T: Scalar, S: Simd>(half: Part<S>, batch: Batch<'_, T>, kept: &[Halvin
     }
     let others = batch.rows.chunks_exact(T::LANES).zip(batch.gradients.chunks_exact(3 * T::LANES));
     for (rows, gradient) in others {
-        let form = Sym3::square(load_gradient::<T, S, T::Half<S>>(half, gradient));
+        let form = Sym3::square(load::<T, S, T::Half<S>>(half, gradient));
         // One by one: `map` of six is a call, which loses the instruction set (a tenth of a step).
         let mut values = [zero; 6];
         for i in 0..6 {

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use super::batch::{Batch, MAX_PARAMETERS, Point};
 use super::rest::{Neighbour, Neighbourhood, Rest};
 use crate::material::{Law, LawFamily, Tissue};
-use crate::math::{MAX_LANES, Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
+use crate::math::{Mat3, Part, Scalar, Simd, Vec3, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::block_table::BlockTable;
+use crate::model::lane_vector::nothing;
 use crate::model::sections::{SectionScratch, Sections};
 use crate::model::{ModelError, Scratch};
 
@@ -186,7 +187,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_forces_with<S: Simd>(&self, simd: S, x: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
-        let mut kept = [[[T::ZERO; MAX_LANES]; 3]; 4];
+        let mut kept = [nothing(); 4];
         for number in batches {
             let batch = self.batch(number);
             for part in Part::all::<T>(simd) {

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use super::batch::{Batch, Point, load_gradient};
+use super::batch::{Batch, Point};
 use super::points::NodalPoints;
 use crate::material::LawFamily;
-use crate::math::{Lanes, MAX_LANES, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
+use crate::math::{Lanes, Mat3, Part, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::model::block_sink::add_block;
+use crate::model::lane_vector::{load, nothing};
 use crate::model::sections::SectionScratch;
 use crate::model::{BlockSink, Scratch};
 
@@ -77,7 +78,7 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 
     #[inline(always)]
     fn add_product_with<S: Simd>(&self, simd: S, kept: &[T], dx: &[[T; 4]], batches: Range<usize>, out: &mut [[T; 4]]) {
-        let mut kept_vectors = [[[T::ZERO; MAX_LANES]; 3]; 4];
+        let mut kept_vectors = [nothing(); 4];
         for number in batches {
             let batch = self.batch(number);
             for part in Part::all::<T>(simd) {
@@ -123,14 +124,14 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
         let count = nodes.len() / T::LANES;
         let points = self.constants.rows() - number * T::LANES;
         for c in 0..count {
-            let g = load_gradient::<T, S, T::Lanes<S>>(part, &gradients[3 * c * T::LANES..]);
+            let g = load::<T, S, T::Lanes<S>>(part, &gradients[3 * c * T::LANES..]);
             let along = [0, 1, 2].map(|row: usize| {
                 let [a, b, c] = derivatives[row];
                 a * g.x + b * g.y + c * g.z
             });
             let rows = if sink.keeps_diagonal_only() { c..c + 1 } else { 0..count };
             for b in rows {
-                let g = load_gradient::<T, S, T::Lanes<S>>(part, &gradients[3 * b * T::LANES..]);
+                let g = load::<T, S, T::Lanes<S>>(part, &gradients[3 * b * T::LANES..]);
                 let [x, y, z] = along.map(|stress| stress * g);
                 let block = Mat3::from_columns(x, y, z);
                 add_block::<T, S>(part, &block, nodes, [b, c], points, sink);
@@ -165,6 +166,6 @@ impl<T: Scalar, L: LawFamily> NodalPoints<T, L> {
 #[inline(always)]
 pub(super) fn load_deformation<T: Scalar, S: Simd>(part: Part<S>, kept: &[T], batch: usize) -> Mat3<T::Lanes<S>> {
     let kept = &kept[batch * DEFORMATION * T::LANES..(batch + 1) * DEFORMATION * T::LANES];
-    let column = |i: usize| load_gradient::<T, S, T::Lanes<S>>(part, &kept[3 * i * T::LANES..]);
+    let column = |i: usize| load::<T, S, T::Lanes<S>>(part, &kept[3 * i * T::LANES..]);
     Mat3::from_columns(column(0), column(1), column(2))
 }

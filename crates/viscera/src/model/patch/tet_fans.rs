@@ -7,6 +7,7 @@ use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
 use crate::model::Sums;
+use crate::model::lane_vector::nothing;
 use crate::solver::Turn;
 
 /// Tetrahedra in the order in which loops visit them: patch by patch, fan by fan, as many fans at once as there are lanes.
@@ -262,7 +263,7 @@ impl TetFans {
         element: impl Forces<T, S, FIELDS>,
         sums: &mut PatchRows<T>,
     ) {
-        let mut scatter = Scatter { element, sums, forces: [[[[T::ZERO; MAX_LANES]; 3]; 3]; LONGEST] };
+        let mut scatter = Scatter { element, sums, forces: [[nothing(); 3]; LONGEST] };
         self.walk(simd, patch, fields, &mut scatter);
     }
 
@@ -299,7 +300,7 @@ impl TetFans {
         element: &impl Diagonal<T>,
         sums: &mut [PatchRows<T>; 2],
     ) {
-        let mut scatter = ScatterBlocks { element, sums, blocks: [[[[T::ZERO; MAX_LANES]; 3]; 8]; LONGEST] };
+        let mut scatter = ScatterBlocks { element, sums, blocks: [[nothing(); 8]; LONGEST] };
         self.walk(simd, patch, [places], &mut scatter);
     }
 
@@ -337,16 +338,8 @@ impl TetFans {
         let zero = Mat3::diagonal(T::Lanes::<S>::splat(simd, T::ZERO));
         let (first, batch) = (self.slot_starts[patch], (0, 0));
         let deformed = [Deformed { edges: zero, f: zero, r: zero }; LONGEST];
-        let mut keep = Keep {
-            record,
-            values,
-            first,
-            block,
-            sums,
-            batch,
-            places: deformed,
-            forces: [[[[T::ZERO; MAX_LANES]; 3]; 3]; LONGEST],
-        };
+        let mut keep =
+            Keep { record, values, first, block, sums, batch, places: deformed, forces: [[nothing(); 3]; LONGEST] };
         self.walk(simd, patch, [places], &mut keep);
     }
 

@@ -3,9 +3,8 @@
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
-use crate::math::{
-    HalfLanes, Halving, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, load_vector, store_vector,
-};
+use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
+use crate::model::lane_vector::{self, Kept, take_up};
 
 /// Whoever is led along the fans, a batch at a time.
 pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
@@ -95,12 +94,12 @@ impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T
 }
 
 /// Vectors of the tetrahedra of a batch, which are added up half by half: in the same order on every processor.
-pub(super) type KeptVectors<T, const VECTORS: usize> = [[Halving<T, 3>; VECTORS]; LONGEST];
+pub(super) type KeptVectors<T, const VECTORS: usize> = [[Kept<T>; VECTORS]; LONGEST];
 
 #[inline(always)]
-fn keep<T: Scalar, S: Simd>(simd: S, forces: Mat3<T::Lanes<S>>, kept: &mut [Halving<T, 3>; 3]) {
+fn keep<T: Scalar, S: Simd>(simd: S, forces: Mat3<T::Lanes<S>>, kept: &mut [Kept<T>; 3]) {
     for corner in 0..3 {
-        store_vector(simd, forces.columns[corner], &mut kept[corner]);
+        lane_vector::keep(simd, forces.columns[corner], &mut kept[corner]);
     }
 }
 
@@ -117,8 +116,8 @@ fn add_up_halves<T: Scalar, S: Simd>(
 }
 
 #[inline(always)]
-fn forces_of<T: Scalar, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 3]) -> [Vec3<T::Half<S>>; 3] {
-    [load_vector(half, &kept[0]), load_vector(half, &kept[1]), load_vector(half, &kept[2])]
+fn forces_of<T: Scalar, S: Simd>(half: Part<S>, kept: &[Kept<T>; 3]) -> [Vec3<T::Half<S>>; 3] {
+    [take_up(half, &kept[0]), take_up(half, &kept[1]), take_up(half, &kept[2])]
 }
 
 /// Adds up the forces of half a batch.
@@ -200,8 +199,8 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
         let kept = &mut self.blocks[place];
         for corner in 0..4 {
             let Sym3 { xx, yy, zz, xy, xz, yz } = blocks[corner];
-            store_vector(part.simd, Vec3::new(xx, yy, zz), &mut kept[2 * corner]);
-            store_vector(part.simd, Vec3::new(xy, xz, yz), &mut kept[2 * corner + 1]);
+            lane_vector::keep(part.simd, Vec3::new(xx, yy, zz), &mut kept[2 * corner]);
+            lane_vector::keep(part.simd, Vec3::new(xy, xz, yz), &mut kept[2 * corner + 1]);
         }
     }
 
@@ -245,13 +244,13 @@ struct HalfBlock<R>([Vec3<R>; 2]);
 impl<R: Real> HalfBlock<R> {
     /// Those of the four corners.
     #[inline(always)]
-    fn of_all<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 8]) -> [Self; 4] {
+    fn of_all<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Kept<T>; 8]) -> [Self; 4] {
         [Self::of(half, kept, 0), Self::of(half, kept, 1), Self::of(half, kept, 2), Self::of(half, kept, 3)]
     }
 
     #[inline(always)]
-    fn of<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Halving<T, 3>; 8], corner: usize) -> Self {
-        Self([load_vector::<T, S>(half, &kept[2 * corner]), load_vector::<T, S>(half, &kept[2 * corner + 1])])
+    fn of<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Kept<T>; 8], corner: usize) -> Self {
+        Self([take_up::<T, S>(half, &kept[2 * corner]), take_up::<T, S>(half, &kept[2 * corner + 1])])
     }
 
     #[inline(always)]
