@@ -1,8 +1,8 @@
 //! Batches of numbers, in registers as wide as the processor has them.
 //!
 //! Element tables have [`Scalar::LANES`] rows to a block, on every processor: the registers of AVX-512 hold them at once, those of others half of
-//! them, and a loop goes through a block part by part. Sums on nodes are made by halves on all of them, so that their bits do not
-//! depend on the width.
+//! them, and a loop goes through a block part by part. Sums on nodes are made by halves on all of them, or where these share no node, so that
+//! their bits do not depend on the width.
 
 use std::cmp::PartialOrd;
 use std::fmt::{Display, LowerExp};
@@ -11,7 +11,10 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f32x16, f64x4, f64x8};
 
 use super::Real;
-use super::rows::{add_doubles, add_singles, gather_doubles, gather_singles, gather_wide_doubles, gather_wide_singles};
+use super::rows::{
+    add_doubles, add_singles, add_wide_doubles, add_wide_singles, gather_doubles, gather_singles, gather_wide_doubles,
+    gather_wide_singles,
+};
 
 /// An instruction set, and the batches that its registers hold.
 pub trait Simd: fearless_simd::Simd {
@@ -47,7 +50,7 @@ pub trait Scalar: Real<Mask = bool> + PartialOrd + Default + Display + LowerExp 
     /// A batch as wide as the registers of `S`: a [block](Scalar::LANES), or half of one.
     type Lanes<S: Simd>: Lanes<Self, S>;
     /// Half a block.
-    type Half<S: Simd>: HalfLanes<Self, S>;
+    type Half<S: Simd>: Lanes<Self, S>;
 
     /// How many rows a block has; the layout of element tables depends on it.
     const LANES: usize;
@@ -96,10 +99,10 @@ impl<S: Simd> Part<S> {
         (0..count).map(move |half| Self { simd: self.simd, number: self.number * count + half })
     }
 
-    /// The number of a half within its part: where the part is a half itself, the compiler knows it.
+    /// The number of a half within its part, or of the part itself: the compiler knows that.
     #[inline(always)]
-    pub(crate) fn within<T: Scalar>(self) -> Self {
-        Self { simd: self.simd, number: self.number % (T::Lanes::<S>::COUNT / T::Half::<S>::COUNT) }
+    pub(crate) fn within<T: Scalar, L: Lanes<T, S>>(self) -> Self {
+        Self { simd: self.simd, number: self.number % (T::Lanes::<S>::COUNT / L::COUNT) }
     }
 
     /// Whether it is the first of its block.
@@ -136,10 +139,6 @@ pub trait Lanes<T: Scalar, S: Simd>: Real {
     /// Rows are loaded whole and transposed in registers: single loads into an array, read back as one vector,
     /// stall on store forwarding (three times slower, measured).
     fn gather(simd: S, rows: &[[T; 4]], nodes: &[u32]) -> [Self; 4];
-}
-
-/// Half a block of lanes.
-pub trait HalfLanes<T: Scalar, S: Simd>: Lanes<T, S> {
     /// Adds three numbers per lane, lane `i` to the first three of `rows[nodes[i]]`, lane after lane: lanes may name the
     /// same row.
     fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[T; 4]]);
@@ -177,7 +176,7 @@ impl_scalar!(f32, Singles, f32x8, 16, "f32");
 impl_scalar!(f64, Doubles, f64x4, 8, "f64");
 
 macro_rules! impl_lanes {
-    ($scalar:ty, $lanes:ident, $count:expr, $gather:path) => {
+    ($scalar:ty, $lanes:ident, $count:expr, $gather:path, $add:path) => {
         impl<S: Simd> Lanes<$scalar, S> for $lanes<S> {
             const COUNT: usize = $count;
 
@@ -196,6 +195,10 @@ macro_rules! impl_lanes {
             #[inline(always)]
             fn gather(simd: S, rows: &[[$scalar; 4]], nodes: &[u32]) -> [Self; 4] {
                 $gather(simd, rows, nodes)
+            }
+            #[inline(always)]
+            fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[$scalar; 4]]) {
+                $add(columns, nodes, rows);
             }
         }
 
@@ -260,24 +263,10 @@ macro_rules! impl_lanes {
     };
 }
 
-impl_lanes!(f32, f32x8, 8, gather_singles);
-impl_lanes!(f32, f32x16, 16, gather_wide_singles);
-impl_lanes!(f64, f64x4, 4, gather_doubles);
-impl_lanes!(f64, f64x8, 8, gather_wide_doubles);
-
-impl<S: Simd> HalfLanes<f32, S> for f32x8<S> {
-    #[inline(always)]
-    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
-        add_singles(columns, nodes, rows);
-    }
-}
-
-impl<S: Simd> HalfLanes<f64, S> for f64x4<S> {
-    #[inline(always)]
-    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
-        add_doubles(columns, nodes, rows);
-    }
-}
+impl_lanes!(f32, f32x8, 8, gather_singles, add_singles);
+impl_lanes!(f32, f32x16, 16, gather_wide_singles, add_wide_singles);
+impl_lanes!(f64, f64x4, 4, gather_doubles, add_doubles);
+impl_lanes!(f64, f64x8, 8, gather_wide_doubles, add_wide_doubles);
 
 /// Rows of the longest block of any scalar.
 pub const MAX_LANES: usize = 16;

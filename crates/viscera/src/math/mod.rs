@@ -14,7 +14,7 @@ mod vec3;
 pub use dual::Dual;
 pub(crate) use instruction_set::baseline;
 pub use instruction_set::{Level, dispatch, dispatch_level, vectorize, with_level};
-pub use lanes::{HalfLanes, Lanes, MAX_LANES, Part, Scalar, Simd};
+pub use lanes::{Lanes, MAX_LANES, Part, Scalar, Simd};
 pub use mat3::Mat3;
 pub(crate) use prefetch::prefetch;
 pub use real::Real;

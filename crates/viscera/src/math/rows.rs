@@ -48,6 +48,18 @@ pub(super) fn add_singles<S: Simd>([x, y, z]: [f32x8<S>; 3], nodes: &[u32], rows
     add_two_singles(zip_high_singles(xz_high, y_high), nodes, 3, rows);
 }
 
+/// The same for sixteen rows.
+#[inline(always)]
+pub(super) fn add_wide_singles<S: Simd>([x, y, z]: [f32x16<S>; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
+    let zero: f32x16<S> = SimdBase::splat(x.token(), 0.0);
+    let (xz_low, xz_high) = (zip_low_wide(x, z), zip_high_wide(x, z));
+    let (y_low, y_high) = (zip_low_wide(y, zero), zip_high_wide(y, zero));
+    add_four_singles(zip_low_wide(xz_low, y_low), nodes, 0, rows);
+    add_four_singles(zip_high_wide(xz_low, y_low), nodes, 1, rows);
+    add_four_singles(zip_low_wide(xz_high, y_high), nodes, 2, rows);
+    add_four_singles(zip_high_wide(xz_high, y_high), nodes, 3, rows);
+}
+
 /// Columns of four rows.
 #[inline(always)]
 pub(super) fn gather_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32]) -> [f64x4<S>; 4] {
@@ -77,6 +89,14 @@ pub(super) fn add_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], rows
     add_two_doubles(zip_high_doubles(x, y), zip_high_doubles(z, zero), nodes, 1, rows);
 }
 
+/// The same for eight rows.
+#[inline(always)]
+pub(super) fn add_wide_doubles<S: Simd>([x, y, z]: [f64x8<S>; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
+    let ((x_low, x_high), (y_low, y_high), (z_low, z_high)) = (x.split(), y.split(), z.split());
+    add_doubles([x_low, y_low, z_low], nodes, rows);
+    add_doubles([x_high, y_high, z_high], &nodes[4..], rows);
+}
+
 /// The rows of a lane and of the one four behind it.
 #[inline(always)]
 fn two_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32], lane: usize) -> f32x8<S> {
@@ -97,6 +117,13 @@ fn add_two_singles<S: Simd>(added: f32x8<S>, nodes: &[u32], lane: usize, rows: &
     (f32x4::from_slice(first.token(), row) + first).store_slice(row);
     let row = &mut rows[nodes[lane + 4] as usize];
     (f32x4::from_slice(second.token(), row) + second).store_slice(row);
+}
+
+#[inline(always)]
+fn add_four_singles<S: Simd>(added: f32x16<S>, nodes: &[u32], lane: usize, rows: &mut [[f32; 4]]) {
+    let (first, second) = added.split();
+    add_two_singles(first, nodes, lane, rows);
+    add_two_singles(second, nodes, lane + 8, rows);
 }
 
 /// The first halves of the rows of a lane and of the one two behind it, and the second ones.

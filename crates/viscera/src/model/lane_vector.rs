@@ -31,8 +31,8 @@ pub(crate) fn keep<T: Scalar, S: Simd>(simd: S, vector: Vec3<T::Lanes<S>>, kept:
     store(Part::first(simd), vector, kept);
 }
 
-/// Takes up the vector of a half.
+/// Takes up the vector of a half, or of the whole part.
 #[inline(always)]
-pub(crate) fn take_up<T: Scalar, S: Simd>(half: Part<S>, kept: &Kept<T>) -> Vec3<T::Half<S>> {
-    load(half.within::<T>(), kept)
+pub(crate) fn take_up<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, kept: &Kept<T>) -> Vec3<R> {
+    load(part.within::<T, R>(), kept)
 }

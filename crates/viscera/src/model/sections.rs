@@ -94,7 +94,7 @@ impl Sections {
     ) {
         let rows = &mut sums.rows[..self.sum_rows()];
         self.copies.each(sums.executor, rows, 1, &|section, rows| {
-            rows.fill([T::ZERO; 4]);
+            rows.as_flattened_mut().fill(T::ZERO);
             work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
         });
         self.copies.add_up_rows(sums.executor, rows, sums.forces);
@@ -109,7 +109,7 @@ impl Sections {
     ) {
         let rows = &mut sums.rows[..2 * self.sum_rows()];
         self.copies.each(sums.executor, rows, 2, &|section, rows| {
-            rows.fill([T::ZERO; 4]);
+            rows.as_flattened_mut().fill(T::ZERO);
             work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
         });
         self.copies.add_up_blocks(sums.executor, rows, out);

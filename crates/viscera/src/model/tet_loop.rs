@@ -8,7 +8,7 @@ use super::block_table::BlockTable;
 use super::lane_vector;
 use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
 use super::{BlockSink, ModelError, Scratch};
-use crate::math::{HalfLanes, Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
 use crate::solver::Turn;
 
@@ -356,7 +356,7 @@ pub(crate) fn scatter_corners<T: Scalar, S: Simd, const CORNERS: usize>(
     }
     for half in part.halves::<T>() {
         for corner in 0..CORNERS {
-            let force = lane_vector::take_up::<T, S>(half, &kept[corner]);
+            let force = lane_vector::take_up::<T, S, T::Half<S>>(half, &kept[corner]);
             let nodes = half.of::<T, T::Half<S>, _>(&nodes[corner * T::LANES..(corner + 1) * T::LANES]);
             T::Half::<S>::scatter_add(force.to_array(), nodes, out);
         }

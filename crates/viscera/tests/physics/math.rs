@@ -1,6 +1,6 @@
 //! Small matrices, lanes and dual numbers: identities that hold for any numbers.
 
-use viscera::math::{Dual, HalfLanes, Lanes, Part, Real, Scalar, Simd, Sym3, dispatch, dispatch_level};
+use viscera::math::{Dual, Lanes, Part, Real, Scalar, Simd, Sym3, dispatch, dispatch_level};
 
 use crate::support::{Matrix, Random, Vector, assert_near};
 
@@ -84,14 +84,15 @@ fn dual_numbers_differentiate_every_operation() {
 }
 
 #[inline(always)]
-fn round_trip<S: Simd, T: Scalar>(simd: S, rows: &[[T; 4]], nodes: &[u32], out: &mut [[T; 4]]) {
+fn round_trip<S: Simd, T: Scalar>(simd: S, rows: &[[T; 4]], nodes: &[u32], [at_once, by_halves]: [&mut [[T; 4]]; 2]) {
     for part in Part::all::<T>(simd) {
         let [x, y, z, _] = T::Lanes::<S>::gather(simd, rows, part.of::<T, T::Lanes<S>, _>(nodes));
         let mut columns = [vec![T::ZERO; T::LANES], vec![T::ZERO; T::LANES], vec![T::ZERO; T::LANES]];
         [x, y, z].into_iter().zip(&mut columns).for_each(|(lanes, column)| lanes.store(part, column));
+        T::Lanes::<S>::scatter_add([x, y, z], part.of::<T, T::Lanes<S>, _>(nodes), at_once);
         for half in part.halves::<T>() {
             let columns = columns.each_ref().map(|column| T::Half::<S>::load(half, column));
-            T::Half::<S>::scatter_add(columns, half.of::<T, T::Half<S>, _>(nodes), out);
+            T::Half::<S>::scatter_add(columns, half.of::<T, T::Half<S>, _>(nodes), by_halves);
         }
     }
 }
@@ -102,13 +103,14 @@ fn duplicates_add_up<T: Scalar>() {
     let rows: Vec<[T; 4]> = (0..6).map(|row| std::array::from_fn(|column| number(4 * row + column))).collect();
     let nodes = [5, 2, 2, 0, 2, 5, 3, 3, 1, 1, 4, 5, 5, 0, 2, 4];
     for level in crate::law_lanes::levels() {
-        let mut out = vec![[T::ZERO; 4]; 6];
-        dispatch!(level, simd => round_trip(simd, &rows, &nodes, &mut out));
+        let (mut at_once, mut by_halves) = (vec![[T::ZERO; 4]; 6], vec![[T::ZERO; 4]; 6]);
+        dispatch!(level, simd => round_trip(simd, &rows, &nodes, [&mut at_once, &mut by_halves]));
         let mut expected = vec![[T::ZERO; 4]; 6];
         for &node in &nodes[..T::LANES] {
             (0..3).for_each(|column| expected[node as usize][column] += rows[node as usize][column]);
         }
-        assert_eq!(out, expected, "{} at {level:?}", T::NAME);
+        assert_eq!(at_once, expected, "{} at {level:?}", T::NAME);
+        assert_eq!(by_halves, expected, "{} by halves at {level:?}", T::NAME);
     }
 }
 

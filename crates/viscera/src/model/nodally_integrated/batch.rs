@@ -1,7 +1,7 @@
 //! The entries of a batch of points, and what the law makes of them.
 
 use crate::material::{Law, LawFamily};
-use crate::math::{HalfLanes, Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::model::lane_vector::{Kept, keep, load, take_up};
 use crate::model::tet_loop::gather_corner;
 
@@ -99,8 +99,8 @@ impl<'a, T: Scalar> Batch<'a, T> {
         keep(part.simd, c, &mut kept[2]);
         keep(part.simd, pull, &mut kept[3]);
         for half in part.halves::<T>() {
-            let (a, b) = (take_up::<T, S>(half, &kept[0]), take_up::<T, S>(half, &kept[1]));
-            let (c, pull) = (take_up::<T, S>(half, &kept[2]), take_up::<T, S>(half, &kept[3]));
+            let (a, b) = (take_up::<T, S, _>(half, &kept[0]), take_up::<T, S, _>(half, &kept[1]));
+            let (c, pull) = (take_up::<T, S, _>(half, &kept[2]), take_up::<T, S, _>(half, &kept[3]));
             self.spread_half::<S>(half, Mat3::from_columns(a, b, c), pull, out);
         }
     }

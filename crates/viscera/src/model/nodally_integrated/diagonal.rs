@@ -8,7 +8,7 @@ use super::batch::{Batch, Point};
 use super::points::NodalPoints;
 use super::tangent::load_deformation;
 use crate::material::LawFamily;
-use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level};
+use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, dispatch, dispatch_level};
 use crate::model::Scratch;
 use crate::model::lane_vector::{Kept, keep, load, nothing, take_up};
 use crate::model::sections::SectionScratch;

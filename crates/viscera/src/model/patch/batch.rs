@@ -11,6 +11,8 @@ pub(super) struct Batch {
     pub(super) fans: usize,
     /// Whether all its fans go all the way around.
     pub(super) is_closed: bool,
+    /// Whether its halves share no node, so that it does not matter which of them is added up first.
+    pub(super) is_apart: bool,
 }
 
 impl Batch {

@@ -19,6 +19,11 @@ impl Fan {
     pub(super) fn is_closed(&self) -> bool {
         self.ring.first() == self.ring.last()
     }
+
+    /// Its nodes; where it closes, one of them twice.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.axis.iter().chain(&self.ring).copied()
+    }
 }
 
 /// A cell at one of its edges: (axis 0, axis 1, from, to) is an even permutation of its corners.

@@ -6,6 +6,7 @@
 
 mod batch;
 mod copies;
+mod deal;
 mod direction;
 mod element;
 mod fan;
@@ -108,6 +109,12 @@ impl Patches {
                 *row = [value.x, value.y, value.z, T::ZERO];
             }
         }
+    }
+
+    /// Clears the rows of a patch; as one row of numbers, since row by row the compiler stores them one by one (2 % of forces).
+    #[inline(always)]
+    pub(crate) fn clear<T: Scalar>(&self, patch: usize, rows: &mut PatchRows<T>) {
+        rows[..self.nodes(patch).len()].as_flattened_mut().fill(T::ZERO);
     }
 
     /// Lets `work` write the rows of each patch, `width` for each of its nodes.

@@ -1,4 +1,5 @@
 use super::batch::Batch;
+use super::deal::{deal, halves_share_no_node};
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
@@ -64,9 +65,8 @@ impl TetFans {
             let local = |node: &u32| order.patches.nodes(patch).partition_point(|other| other < node) as u32;
             let corners: Vec<[u32; 4]> =
                 part.iter().map(|&cell| mesh.cells[cell as usize].each_ref().map(local)).collect();
-            let fans = lanes_apart(fans(&corners), lanes);
-            for batch in fans.chunks(lanes) {
-                order.add_batch(batch, part);
+            for batch in deal(fans(&corners), lanes) {
+                order.add_batch(&batch, part);
             }
             order.batch_starts.push(order.batches.len());
             order.slot_starts.push(order.slots());
@@ -77,7 +77,9 @@ impl TetFans {
     fn add_batch(&mut self, fans: &[Fan], part: &[u32]) {
         let length = fans.iter().map(|fan| fan.cells.len()).max().unwrap_or(0);
         let is_closed = fans.iter().all(|fan| fan.cells.len() == length && fan.is_closed());
-        let batch = Batch { nodes: self.nodes.len(), slot: self.slots(), length, fans: fans.len(), is_closed };
+        let is_apart = fans.len() == self.lanes && halves_share_no_node(fans);
+        let batch =
+            Batch { nodes: self.nodes.len(), slot: self.slots(), length, fans: fans.len(), is_closed, is_apart };
         self.batches.push(batch);
         let fan = |lane: usize| fans.get(lane).unwrap_or(&fans[0]);
         for end in 0..2 {
@@ -164,7 +166,7 @@ impl TetFans {
         self.patches.each(executor, rows, 1, &|patch, rows| {
             let ([sums], _) = rows.as_chunks_mut() else { return };
             let mut places = no_rows::<T, FIELDS>();
-            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
+            self.patches.clear(patch, sums);
             self.patches.gather(patch, &fields, &mut places);
             self.scatter(patch, places.each_ref(), element, sums);
         });
@@ -183,7 +185,7 @@ impl TetFans {
         let work = |patch: usize, rows: PerPatch<'_, [T; 4]>| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return T::ZERO };
             let mut places = no_rows::<T, 1>();
-            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
+            self.patches.clear(patch, sums);
             self.patches.gather(patch, &[x], &mut places);
             dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], (element, measure), sums))
         };
@@ -318,7 +320,7 @@ impl TetFans {
         executor.each(self.patches.count(), data, &|patch, (table, rows): (PerPatch<'_, T>, PerPatch<'_, [T; 4]>)| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return };
             let mut places = no_rows::<T, 1>();
-            sums[..self.patches.nodes(patch).len()].fill([T::ZERO; 4]);
+            self.patches.clear(patch, sums);
             self.patches.gather(patch, &[x], &mut places);
             let values = (table.values, block);
             dispatch!(dispatch_level(), simd => self.scatter_and_keep(simd, patch, &places[0], (record, values), sums));
@@ -386,8 +388,15 @@ impl TetFans {
             let (end, nodes) = nodes.split_at(T::LANES);
             let (ring_nodes, last) = nodes.split_at(batch.length * T::LANES);
             let last = if batch.is_closed { &ring_nodes[..T::LANES] } else { last };
-            let batch_nodes =
-                BatchNodes { origin, end, ring: ring_nodes, last, is_closed: batch.is_closed, fans: batch.fans };
+            let batch_nodes = BatchNodes {
+                origin,
+                end,
+                ring: ring_nodes,
+                last,
+                is_closed: batch.is_closed,
+                fans: batch.fans,
+                is_apart: batch.is_apart,
+            };
             for part in Part::all::<T>(simd).take_while(|part| part.start::<T, T::Lanes<S>>() < batch.fans) {
                 let at_origin = gather(part, fields, origin);
                 let axis = minus(gather(part, fields, end), &at_origin);
@@ -418,25 +427,6 @@ fn largest_lane<T: Scalar, S: Simd>(simd: S, value: T::Lanes<S>) -> T {
     let mut lanes = [T::ZERO; MAX_LANES];
     value.store(Part::first(simd), &mut lanes);
     lanes.into_iter().fold(T::ZERO, Real::max)
-}
-
-/// Sorts fans so that the lanes of a batch are far from each other: neighbours share nodes, and a force that is added to a
-/// node has to wait for the one before. Those that close stand together.
-fn lanes_apart(fans: Vec<Fan>, lanes: usize) -> Vec<Fan> {
-    let mut sorted = Vec::with_capacity(fans.len());
-    for same in fans.chunk_by(|a, b| a.cells.len() == b.cells.len()) {
-        let (closed, open): (Vec<_>, Vec<_>) = same.iter().cloned().partition(Fan::is_closed);
-        let whole = closed.len() / lanes * lanes;
-        let rest = [&closed[whole..], &open].concat();
-        for fans in [&closed[..whole], &rest] {
-            let batches = fans.len() / lanes;
-            for batch in 0..batches {
-                sorted.extend((0..lanes).map(|lane| fans[lane * batches + batch].clone()));
-            }
-            sorted.extend_from_slice(&fans[batches * lanes..]);
-        }
-    }
-    sorted
 }
 
 /// A node of a fan's ring; beyond the end the last two in turn, so that the padding is the last cell over and over.

@@ -3,7 +3,7 @@
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
-use crate::math::{HalfLanes, Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
+use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::model::lane_vector::{self, Kept, take_up};
 
 /// Whoever is led along the fans, a batch at a time.
@@ -29,9 +29,17 @@ pub(super) struct BatchNodes<'a> {
     pub(super) is_closed: bool,
     /// How many lanes have fans of their own.
     pub(super) fans: usize,
+    /// Whether the halves share no node.
+    pub(super) is_apart: bool,
 }
 
 impl BatchNodes<'_> {
+    /// Whether a part is added up at once: where it is a half, or its halves share no node.
+    #[inline(always)]
+    fn is_at_once<T: Scalar, S: Simd>(&self) -> bool {
+        T::Lanes::<S>::COUNT == T::Half::<S>::COUNT || self.is_apart
+    }
+
     /// The halves of a part that have fans of their own.
     #[inline(always)]
     fn halves<T: Scalar, S: Simd>(&self, part: Part<S>) -> impl Iterator<Item = Part<S>> {
@@ -89,7 +97,7 @@ impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T
 
     #[inline(always)]
     fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
-        add_up_halves(&self.forces, part, nodes, self.sums);
+        add_up_batch(&self.forces, part, nodes, self.sums);
     }
 }
 
@@ -103,49 +111,54 @@ fn keep<T: Scalar, S: Simd>(simd: S, forces: Mat3<T::Lanes<S>>, kept: &mut [Kept
     }
 }
 
+/// Adds up the forces of a batch: at once where its halves share no node, half by half otherwise, with the same sums.
 #[inline(always)]
-fn add_up_halves<T: Scalar, S: Simd>(
+fn add_up_batch<T: Scalar, S: Simd>(
     forces: &KeptVectors<T, 3>,
     part: Part<S>,
     nodes: &BatchNodes<'_>,
     sums: &mut PatchRows<T>,
 ) {
-    for half in nodes.halves::<T, S>(part) {
-        add_up(forces, half, nodes, sums);
+    if nodes.is_at_once::<T, S>() {
+        add_up::<T, S, T::Lanes<S>>(forces, part, nodes, sums);
+    } else {
+        for half in nodes.halves::<T, S>(part) {
+            add_up::<T, S, T::Half<S>>(forces, half, nodes, sums);
+        }
     }
 }
 
 #[inline(always)]
-fn forces_of<T: Scalar, S: Simd>(half: Part<S>, kept: &[Kept<T>; 3]) -> [Vec3<T::Half<S>>; 3] {
-    [take_up(half, &kept[0]), take_up(half, &kept[1]), take_up(half, &kept[2])]
+fn forces_of<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, kept: &[Kept<T>; 3]) -> [Vec3<R>; 3] {
+    [take_up(part, &kept[0]), take_up(part, &kept[1]), take_up(part, &kept[2])]
 }
 
-/// Adds up the forces of half a batch.
+/// Adds up the forces of a batch, or of half of one.
 #[inline(always)]
-fn add_up<T: Scalar, S: Simd>(
+fn add_up<T: Scalar, S: Simd, R: Lanes<T, S>>(
     forces: &KeptVectors<T, 3>,
-    half: Part<S>,
+    part: Part<S>,
     nodes: &BatchNodes<'_>,
     sums: &mut PatchRows<T>,
 ) {
     // `ring` sums up the forces on the ring: what is left to make them all zero acts on the origin. `carried` is what the last tetrahedron
     // exerts on the node that it shares with the next, and `kept` waits where the ring will close.
-    let [mut end, kept, mut carried] = forces_of::<T, S>(half, &forces[0]);
+    let [mut end, kept, mut carried]: [Vec3<R>; 3] = forces_of(part, &forces[0]);
     let mut ring = kept;
     if !nodes.is_closed {
-        add(half, kept, &nodes.ring[..T::LANES], sums);
+        add(part, kept, &nodes.ring[..T::LANES], sums);
     }
-    for (forces, from) in forces.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
-        let [on_end, on_ring, next] = forces_of::<T, S>(half, forces);
+    for (forces, from) in forces[1..].iter().zip(nodes.ring[T::LANES..].chunks_exact(T::LANES)) {
+        let [on_end, on_ring, next] = forces_of(part, forces);
         let on_ring = carried + on_ring;
         end += on_end;
         ring += on_ring;
         carried = next;
-        add(half, on_ring, from, sums);
+        add(part, on_ring, from, sums);
     }
-    add(half, if nodes.is_closed { kept + carried } else { carried }, nodes.last, sums);
-    add(half, end, nodes.end, sums);
-    add(half, -(ring + carried + end), nodes.origin, sums);
+    add(part, if nodes.is_closed { kept + carried } else { carried }, nodes.last, sums);
+    add(part, end, nodes.end, sums);
+    add(part, -(ring + carried + end), nodes.origin, sums);
 }
 
 /// Writes rows, slot by slot, and adds up forces.
@@ -180,7 +193,7 @@ impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
         for (number, (place, values)) in self.places[..length].iter().zip(values).enumerate() {
             keep::<T, S>(part.simd, self.record.record(part, slot + number, place, values), &mut self.forces[number]);
         }
-        add_up_halves(&self.forces, part, nodes, self.sums);
+        add_up_batch(&self.forces, part, nodes, self.sums);
     }
 }
 
@@ -206,51 +219,61 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
 
     #[inline(always)]
     fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
-        for half in nodes.halves::<T, S>(part) {
-            add_up_blocks(&self.blocks, half, nodes, self.sums);
+        if nodes.is_at_once::<T, S>() {
+            add_up_blocks::<T, S, T::Lanes<S>>(&self.blocks, part, nodes, self.sums);
+        } else {
+            for half in nodes.halves::<T, S>(part) {
+                add_up_blocks::<T, S, T::Half<S>>(&self.blocks, half, nodes, self.sums);
+            }
         }
     }
 }
 
-/// Adds up the blocks of half a batch.
+/// Adds up the blocks of a batch, or of half of one.
 #[inline(always)]
-fn add_up_blocks<T: Scalar, S: Simd>(
+fn add_up_blocks<T: Scalar, S: Simd, R: Lanes<T, S>>(
     blocks: &KeptVectors<T, 8>,
-    half: Part<S>,
+    part: Part<S>,
     nodes: &BatchNodes<'_>,
     sums: &mut [PatchRows<T>; 2],
 ) {
-    let [mut origin, mut end, kept, mut carried] = HalfBlock::of_all(half, &blocks[0]);
+    let [mut origin, mut end, kept, mut carried]: [LaneBlock<R>; 4] = LaneBlock::of_all(part, &blocks[0]);
     if !nodes.is_closed {
-        kept.add(half, &nodes.ring[..T::LANES], sums);
+        kept.add(part, &nodes.ring[..T::LANES], sums);
     }
-    for (blocks, from) in blocks.iter().zip(nodes.ring.chunks_exact(T::LANES)).skip(1) {
-        let [on_origin, on_end, on_ring, next] = HalfBlock::of_all(half, blocks);
+    for (blocks, from) in blocks[1..].iter().zip(nodes.ring[T::LANES..].chunks_exact(T::LANES)) {
+        let [on_origin, on_end, on_ring, next] = LaneBlock::of_all(part, blocks);
         origin = origin.plus(on_origin);
         end = end.plus(on_end);
-        carried.plus(on_ring).add(half, from, sums);
+        carried.plus(on_ring).add(part, from, sums);
         carried = next;
     }
     let last = if nodes.is_closed { kept.plus(carried) } else { carried };
-    last.add(half, nodes.last, sums);
-    end.add(half, nodes.end, sums);
-    origin.add(half, nodes.origin, sums);
+    last.add(part, nodes.last, sums);
+    end.add(part, nodes.end, sums);
+    origin.add(part, nodes.origin, sums);
 }
 
-/// Half a batch of blocks: xx, yy, zz, then xy, xz, yz.
+/// A block in each lane: xx, yy, zz, then xy, xz, yz.
 #[derive(Clone, Copy)]
-struct HalfBlock<R>([Vec3<R>; 2]);
+struct LaneBlock<R>([Vec3<R>; 2]);
 
-impl<R: Real> HalfBlock<R> {
+impl<R: Real> LaneBlock<R> {
     /// Those of the four corners.
     #[inline(always)]
-    fn of_all<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Kept<T>; 8]) -> [Self; 4] {
-        [Self::of(half, kept, 0), Self::of(half, kept, 1), Self::of(half, kept, 2), Self::of(half, kept, 3)]
+    fn of_all<T: Scalar, S: Simd>(part: Part<S>, kept: &[Kept<T>; 8]) -> [Self; 4]
+    where
+        R: Lanes<T, S>,
+    {
+        [Self::of(part, kept, 0), Self::of(part, kept, 1), Self::of(part, kept, 2), Self::of(part, kept, 3)]
     }
 
     #[inline(always)]
-    fn of<T: Scalar<Half<S> = R>, S: Simd>(half: Part<S>, kept: &[Kept<T>; 8], corner: usize) -> Self {
-        Self([take_up::<T, S>(half, &kept[2 * corner]), take_up::<T, S>(half, &kept[2 * corner + 1])])
+    fn of<T: Scalar, S: Simd>(part: Part<S>, kept: &[Kept<T>; 8], corner: usize) -> Self
+    where
+        R: Lanes<T, S>,
+    {
+        Self([take_up(part, &kept[2 * corner]), take_up(part, &kept[2 * corner + 1])])
     }
 
     #[inline(always)]
@@ -259,9 +282,12 @@ impl<R: Real> HalfBlock<R> {
     }
 
     #[inline(always)]
-    fn add<T: Scalar<Half<S> = R>, S: Simd>(self, half: Part<S>, nodes: &[u32], sums: &mut [PatchRows<T>; 2]) {
-        add(half, self.0[0], nodes, &mut sums[0]);
-        add(half, self.0[1], nodes, &mut sums[1]);
+    fn add<T: Scalar, S: Simd>(self, part: Part<S>, nodes: &[u32], sums: &mut [PatchRows<T>; 2])
+    where
+        R: Lanes<T, S>,
+    {
+        add(part, self.0[0], nodes, &mut sums[0]);
+        add(part, self.0[1], nodes, &mut sums[1]);
     }
 }
 
@@ -290,7 +316,7 @@ pub(super) fn indices<T: Scalar, S: Simd, L: Lanes<T, S>>(part: Part<S>, nodes: 
 }
 
 #[inline(always)]
-fn add<T: Scalar, S: Simd>(half: Part<S>, force: Vec3<T::Half<S>>, nodes: &[u32], sums: &mut PatchRows<T>) {
-    let indices = indices::<T, S, T::Half<S>>(half, nodes);
-    T::Half::<S>::scatter_add(force.to_array(), &indices[..T::Half::<S>::COUNT], sums);
+fn add<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, force: Vec3<R>, nodes: &[u32], sums: &mut PatchRows<T>) {
+    let indices = indices::<T, S, R>(part, nodes);
+    R::scatter_add(force.to_array(), &indices[..R::COUNT], sums);
 }
