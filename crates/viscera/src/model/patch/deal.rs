@@ -3,8 +3,7 @@
 //! A force that is added to a node has to wait for the one before. And batches whose halves share no node are added up at once, to the same bits
 //! as half by half.
 
-use std::collections::HashSet;
-
+use super::PATCH_NODES;
 use super::fan::Fan;
 
 /// Deals fans, the longest first, into batches of `lanes`, the last one perhaps of fewer. Those that close stand together.
@@ -49,43 +48,66 @@ fn deal_same(fans: &mut Vec<Fan>, lanes: usize, batches: &mut Vec<Vec<Fan>>) {
 /// Takes a batch whose halves share no node, with those that are `given` first.
 fn take_apart(given: &[Fan], fans: &mut Vec<Fan>, lanes: usize) -> Option<Vec<Fan>> {
     let (first, second) = given.split_at(given.len().min(lanes / 2));
-    let (mut first, mut second, mut left) = (first.to_vec(), second.to_vec(), fans.clone());
-    fill_up(&mut first, &second, &mut left, lanes / 2);
-    fill_up(&mut second, &first, &mut left, lanes / 2);
-    first.extend(second);
-    let batch = (first.len() == lanes && halves_share_no_node(&first)).then_some(first)?;
-    *fans = left;
-    Some(batch)
+    let mut halves = [Nodes::of(first), Nodes::of(second)];
+    let mut is_taken = vec![false; fans.len()];
+    let mut batch = Vec::with_capacity(lanes);
+    for (half, given) in [first, second].into_iter().enumerate() {
+        batch.extend_from_slice(given);
+        let other = halves[1 - half].clone();
+        fill_up(&mut batch, fans, (&mut halves[half], &other), &mut is_taken, (half + 1) * (lanes / 2));
+    }
+    (batch.len() == lanes && halves_share_no_node(&batch)).then(|| {
+        let mut taken = is_taken.into_iter();
+        fans.retain(|_| taken.next() == Some(false));
+        batch
+    })
 }
 
 /// Fills up half a batch with fans that share no node with the other half; with such first that share none with this one either.
-fn fill_up(half: &mut Vec<Fan>, other: &[Fan], fans: &mut Vec<Fan>, count: usize) {
-    let others = nodes(other);
-    let mut met = &others | &nodes(half);
+fn fill_up(
+    batch: &mut Vec<Fan>,
+    fans: &[Fan],
+    (half, other): (&mut Nodes, &Nodes),
+    is_taken: &mut [bool],
+    count: usize,
+) {
     for may_touch in [false, true] {
-        let mut next = 0;
-        while half.len() < count && next < fans.len() {
-            let avoided = if may_touch { &others } else { &met };
-            if fans[next].nodes().any(|node| avoided.contains(&node)) {
-                next += 1;
-            } else {
-                let fan = fans.remove(next);
-                met.extend(fan.nodes());
-                half.push(fan);
+        for (fan, is_taken) in fans.iter().zip(is_taken.iter_mut()) {
+            let touches = |nodes: &Nodes| fan.nodes().any(|node| nodes.contains(node));
+            if batch.len() < count && !*is_taken && !touches(other) && (may_touch || !touches(half)) {
+                half.add(fan);
+                batch.push(fan.clone());
+                *is_taken = true;
             }
         }
     }
 }
 
-fn nodes(fans: &[Fan]) -> HashSet<u32> {
-    fans.iter().flat_map(Fan::nodes).collect()
-}
-
 /// Whether no node of the first half of `fans` is one of the second.
 pub(super) fn halves_share_no_node(fans: &[Fan]) -> bool {
     let (first, second) = fans.split_at(fans.len() / 2);
-    let met = nodes(first);
-    second.iter().flat_map(Fan::nodes).all(|node| !met.contains(&node))
+    let met = Nodes::of(first);
+    second.iter().flat_map(Fan::nodes).all(|node| !met.contains(node))
+}
+
+/// Some of the nodes of a patch.
+#[derive(Clone)]
+struct Nodes([bool; PATCH_NODES]);
+
+impl Nodes {
+    fn of(fans: &[Fan]) -> Self {
+        let mut nodes = Self([false; PATCH_NODES]);
+        fans.iter().for_each(|fan| nodes.add(fan));
+        nodes
+    }
+
+    fn add(&mut self, fan: &Fan) {
+        fan.nodes().for_each(|node| self.0[node as usize] = true);
+    }
+
+    fn contains(&self, node: u32) -> bool {
+        self.0[node as usize]
+    }
 }
 
 #[cfg(test)]
