@@ -110,13 +110,9 @@ fn the_truth_cube_is_pressed_without_locking_and_its_beads_go_where_they_were_me
         }
     }
     for row in found.rows.iter().filter(|row| !row.variant.is_free_of_locking()) {
-        let force = row.outcome.as_ref().map_or(f64::INFINITY, |outcome| outcome.force);
-        assert!(
-            force > 3.0,
-            "{}, state {}: {force} of the converged force, where plain elements lock",
-            row.variant.name(),
-            row.state
-        );
+        let Some(outcome) = &row.outcome else { continue };
+        let (name, force) = (row.variant.name(), outcome.force);
+        assert!(force > 3.0, "{name}, state {}: {force} of the converged force, where plain elements lock", row.state);
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn load<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, columns: &
     Vec3::new(R::load(part, columns), R::load(part, &columns[T::LANES..]), R::load(part, &columns[2 * T::LANES..]))
 }
 
-/// A vector of a part that is taken up by halves: with halves taken out of registers an implicit step took 3 % longer with AVX-512.
+/// A vector of a part that is taken up by halves, or whole once all are kept: with halves taken out of registers an implicit step took 3 % longer with AVX-512.
 pub(crate) type Kept<T> = [T; 3 * MAX_LANES];
 
 /// Nothing kept yet.

@@ -279,7 +279,7 @@ impl<T: Scalar> Scratch<T> {
 
     /// Clears the forces.
     pub(crate) fn clear_forces(&mut self) {
-        self.forces.as_flattened_mut().fill(T::ZERO);
+        patch::clear(&mut self.forces);
     }
 
     /// Fills the directions with `dx`.

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use super::block_table::BlockTable;
-use super::patch::Patches;
+use super::patch::{Patches, clear};
 use crate::executor::{Divide, Executor, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Vec3};
 
@@ -94,7 +94,7 @@ impl Sections {
     ) {
         let rows = &mut sums.rows[..self.sum_rows()];
         self.copies.each(sums.executor, rows, 1, &|section, rows| {
-            rows.as_flattened_mut().fill(T::ZERO);
+            clear(rows);
             work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
         });
         self.copies.add_up_rows(sums.executor, rows, sums.forces);
@@ -109,7 +109,7 @@ impl Sections {
     ) {
         let rows = &mut sums.rows[..2 * self.sum_rows()];
         self.copies.each(sums.executor, rows, 2, &|section, rows| {
-            rows.as_flattened_mut().fill(T::ZERO);
+            clear(rows);
             work(section * BATCHES..self.batches.min((section + 1) * BATCHES), rows);
         });
         self.copies.add_up_blocks(sums.executor, rows, out);

@@ -22,11 +22,10 @@ pub(super) fn deal(fans: Vec<Fan>, lanes: usize) -> Vec<Vec<Fan>> {
             let batch = take_apart(&longer, &mut left, lanes);
             batches.push(batch.unwrap_or_else(|| longer.iter().cloned().chain(left.drain(..wanted)).collect()));
         }
-        let (mut closed, open): (Vec<_>, Vec<_>) = left.into_iter().partition(Fan::is_closed);
-        deal_same(&mut closed, lanes, &mut batches);
-        closed.extend(open);
-        deal_same(&mut closed, lanes, &mut batches);
-        longer = closed;
+        let (closed, open): (Vec<_>, Vec<_>) = left.into_iter().partition(Fan::is_closed);
+        let mut left = deal_same(closed, lanes, &mut batches);
+        left.extend(open);
+        longer = deal_same(left, lanes, &mut batches);
     }
     if !longer.is_empty() {
         batches.push(longer);
@@ -34,15 +33,15 @@ pub(super) fn deal(fans: Vec<Fan>, lanes: usize) -> Vec<Vec<Fan>> {
     batches
 }
 
-/// Deals whole batches, and leaves what is too little for one. Where halves that share no node are used up, fans are put far apart.
-fn deal_same(fans: &mut Vec<Fan>, lanes: usize, batches: &mut Vec<Vec<Fan>>) {
-    while let Some(batch) = take_apart(&[], fans, lanes) {
+/// Deals whole batches, and gives back what is too little for one. Where halves that share no node are used up, fans are put far apart.
+fn deal_same(mut fans: Vec<Fan>, lanes: usize, batches: &mut Vec<Vec<Fan>>) -> Vec<Fan> {
+    while let Some(batch) = take_apart(&[], &mut fans, lanes) {
         batches.push(batch);
     }
     let count = fans.len() / lanes;
     let left = fans.split_off(count * lanes);
     batches.extend((0..count).map(|batch| (0..lanes).map(|lane| fans[lane * count + batch].clone()).collect()));
-    *fans = left;
+    left
 }
 
 /// Takes a batch whose halves share no node, with those that are `given` first.

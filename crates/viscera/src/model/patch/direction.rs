@@ -1,7 +1,7 @@
 //! The direction of a product on copies of nodes: it follows the conjugate gradient there, so that an iteration reads of each node only
 //! what changes it.
 
-use super::{PatchRows, Patches};
+use super::{PatchRows, Patches, clear};
 use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::solver::{Turn, dot_of_rows};
 
@@ -19,7 +19,7 @@ impl Patches {
             for (copy, (&node, mass)) in (self.row_starts[patch]..).zip(nodes.iter().zip(inertia.iter_mut())) {
                 *mass = if self.copies.is_first(node, copy) { masses[node as usize] } else { T::ZERO };
             }
-            direction.fill([T::ZERO; 4]);
+            clear(direction);
         }
         let weight = turn.weight.unwrap_or(T::ZERO);
         dispatch!(dispatch_level(), _simd => follow((nodes, inertia), weight, turn.product, [sums, direction]));

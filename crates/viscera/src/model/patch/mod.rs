@@ -34,6 +34,12 @@ pub(crate) fn no_rows<T: Scalar, const FIELDS: usize>() -> [PatchRows<T>; FIELDS
     [[[T::ZERO; 4]; PATCH_NODES]; FIELDS]
 }
 
+/// Clears rows; as one row of numbers, since rows the compiler stores one by one (2 % of forces).
+#[inline(always)]
+pub(crate) fn clear<T: Scalar>(rows: &mut [[T; 4]]) {
+    rows.as_flattened_mut().fill(T::ZERO);
+}
+
 /// The patches of a mesh, and where the copies of its nodes are in them.
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
@@ -109,12 +115,6 @@ impl Patches {
                 *row = [value.x, value.y, value.z, T::ZERO];
             }
         }
-    }
-
-    /// Clears the rows of a patch; as one row of numbers, since row by row the compiler stores them one by one (2 % of forces).
-    #[inline(always)]
-    pub(crate) fn clear<T: Scalar>(&self, patch: usize, rows: &mut PatchRows<T>) {
-        rows[..self.nodes(patch).len()].as_flattened_mut().fill(T::ZERO);
     }
 
     /// Lets `work` write the rows of each patch, `width` for each of its nodes.

@@ -3,7 +3,7 @@ use super::deal::{deal, halves_share_no_node};
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
-use super::{PatchRows, Patches, PerPatch, no_rows};
+use super::{PatchRows, Patches, PerPatch, clear, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
 use crate::mesh::TetMesh;
@@ -166,7 +166,7 @@ impl TetFans {
         self.patches.each(executor, rows, 1, &|patch, rows| {
             let ([sums], _) = rows.as_chunks_mut() else { return };
             let mut places = no_rows::<T, FIELDS>();
-            self.patches.clear(patch, sums);
+            clear(&mut sums[..self.patches.nodes(patch).len()]);
             self.patches.gather(patch, &fields, &mut places);
             self.scatter(patch, places.each_ref(), element, sums);
         });
@@ -185,7 +185,7 @@ impl TetFans {
         let work = |patch: usize, rows: PerPatch<'_, [T; 4]>| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return T::ZERO };
             let mut places = no_rows::<T, 1>();
-            self.patches.clear(patch, sums);
+            clear(&mut sums[..self.patches.nodes(patch).len()]);
             self.patches.gather(patch, &[x], &mut places);
             dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], (element, measure), sums))
         };
@@ -320,7 +320,7 @@ impl TetFans {
         executor.each(self.patches.count(), data, &|patch, (table, rows): (PerPatch<'_, T>, PerPatch<'_, [T; 4]>)| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return };
             let mut places = no_rows::<T, 1>();
-            self.patches.clear(patch, sums);
+            clear(&mut sums[..self.patches.nodes(patch).len()]);
             self.patches.gather(patch, &[x], &mut places);
             let values = (table.values, block);
             dispatch!(dispatch_level(), simd => self.scatter_and_keep(simd, patch, &places[0], (record, values), sums));

@@ -36,7 +36,7 @@ pub(super) struct BatchNodes<'a> {
 impl BatchNodes<'_> {
     /// Whether a part is added up at once: where it is a half, or its halves share no node.
     #[inline(always)]
-    fn is_at_once<T: Scalar, S: Simd>(&self) -> bool {
+    fn adds_up_at_once<T: Scalar, S: Simd>(&self) -> bool {
         T::Lanes::<S>::COUNT == T::Half::<S>::COUNT || self.is_apart
     }
 
@@ -101,7 +101,7 @@ impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T
     }
 }
 
-/// Vectors of the tetrahedra of a batch, which are added up half by half: in the same order on every processor.
+/// Vectors of the tetrahedra of a batch, on their way to be added up.
 pub(super) type KeptVectors<T, const VECTORS: usize> = [[Kept<T>; VECTORS]; LONGEST];
 
 #[inline(always)]
@@ -111,7 +111,7 @@ fn keep<T: Scalar, S: Simd>(simd: S, forces: Mat3<T::Lanes<S>>, kept: &mut [Kept
     }
 }
 
-/// Adds up the forces of a batch: at once where its halves share no node, half by half otherwise, with the same sums.
+/// Adds up the forces of a batch: at once where its halves share no node, half by half otherwise; so sums are the same on every processor.
 #[inline(always)]
 fn add_up_batch<T: Scalar, S: Simd>(
     forces: &KeptVectors<T, 3>,
@@ -119,7 +119,7 @@ fn add_up_batch<T: Scalar, S: Simd>(
     nodes: &BatchNodes<'_>,
     sums: &mut PatchRows<T>,
 ) {
-    if nodes.is_at_once::<T, S>() {
+    if nodes.adds_up_at_once::<T, S>() {
         add_up::<T, S, T::Lanes<S>>(forces, part, nodes, sums);
     } else {
         for half in nodes.halves::<T, S>(part) {
@@ -219,7 +219,7 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
 
     #[inline(always)]
     fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
-        if nodes.is_at_once::<T, S>() {
+        if nodes.adds_up_at_once::<T, S>() {
             add_up_blocks::<T, S, T::Lanes<S>>(&self.blocks, part, nodes, self.sums);
         } else {
             for half in nodes.halves::<T, S>(part) {
