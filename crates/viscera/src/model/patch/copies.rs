@@ -48,25 +48,27 @@ impl Copies {
     /// Hands each node to `add` with the row of each of its copies.
     pub(super) fn each<V: Send>(&self, executor: &Executor, out: &mut [V], add: &(impl Fn(&mut V, usize) + Sync)) {
         executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
-            self.each_of_block(block, out, |sum, row| row.into_iter().for_each(|row| add(sum, row)), add);
+            for (sum, &row) in out.iter_mut().zip(self.firsts(block, NODE_BLOCK)) {
+                if row != NONE {
+                    add(sum, row as usize);
+                }
+            }
+            self.each_other(block, out, add);
         });
     }
 
-    /// Hands each node of a block to `first` with the row of its first copy, if it has one; then to `other` with that of each other.
+    /// The rows of the first copies of `nodes` nodes of a block; [`NONE`] where there is none, which is beyond all rows.
     #[inline(always)]
-    pub(super) fn each_of_block<V>(
-        &self,
-        block: usize,
-        out: &mut [V],
-        first: impl Fn(&mut V, Option<usize>),
-        other: impl Fn(&mut V, usize),
-    ) {
-        let start = block * NODE_BLOCK;
-        for (sum, &row) in out.iter_mut().zip(&self.firsts[start..]) {
-            first(sum, (row != NONE).then_some(row as usize));
-        }
+    pub(super) fn firsts(&self, block: usize, nodes: usize) -> &[u32] {
+        let firsts = &self.firsts[block * NODE_BLOCK..];
+        &firsts[..nodes.min(firsts.len())]
+    }
+
+    /// Hands nodes of a block to `add` with the row of each copy but the first.
+    #[inline(always)]
+    pub(super) fn each_other<V>(&self, block: usize, out: &mut [V], add: impl Fn(&mut V, usize)) {
         for &(node, row) in &self.others[self.starts[block] as usize..self.starts[block + 1] as usize] {
-            other(&mut out[node as usize - start], row as usize);
+            add(&mut out[node as usize - block * NODE_BLOCK], row as usize);
         }
     }
 }

@@ -18,7 +18,7 @@ pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
 use crate::executor::{Divide, Executor, NodeBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Sym3, Vec3};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level};
 use crate::mesh::partition;
 
 /// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
@@ -110,10 +110,7 @@ impl Patches {
         rows: &mut [PatchRows<T>; FIELDS],
     ) {
         for (rows, values) in rows.iter_mut().zip(fields) {
-            for (row, &node) in rows.iter_mut().zip(self.nodes(patch)) {
-                let value = values[node as usize];
-                *row = [value.x, value.y, value.z, T::ZERO];
-            }
+            dispatch!(dispatch_level(), _simd => gather(self.nodes(patch), values, rows));
         }
     }
 
@@ -150,8 +147,17 @@ impl Patches {
     /// The same for a block of nodes.
     #[inline(always)]
     pub(crate) fn write_up_block<T: Scalar>(&self, block: usize, rows: &[[T; 4]], out: &mut [Vec3<T>]) {
-        let write = |sum: &mut Vec3<T>, row: Option<usize>| *sum = row.map_or(Vec3::ZERO, |row| force(rows, row));
-        self.copies.each_of_block(block, out, write, |sum, row| *sum += force(rows, row));
+        let firsts = self.copies.firsts(block, out.len());
+        let Some((&last, most)) = firsts.split_last() else { return };
+        let row = |number: u32| rows.get(number as usize).copied().unwrap_or([T::ZERO; 4]);
+        // The fourth number goes to the next node, which is written after: a row is one load and one store.
+        for (node, &first) in most.iter().enumerate() {
+            let Some([own, next]) = out[node..].first_chunk_mut() else { break };
+            [own.x, own.y, own.z, next.x] = row(first);
+        }
+        let [x, y, z, _] = row(last);
+        out[most.len()] = Vec3::new(x, y, z);
+        self.copies.each_other(block, out, |sum, row| *sum += force(rows, row));
     }
 
     /// Adds to each node of `out` the rows of its copies, where `out` has rows as well.
@@ -171,6 +177,18 @@ impl Patches {
         };
         self.copies.each(executor, out, &add);
     }
+}
+
+/// Reads nodes in ascending order. The fourth number of a row is whatever comes next: a row is one load and one store then.
+#[inline(always)]
+fn gather<T: Scalar>(nodes: &[u32], values: &[Vec3<T>], rows: &mut PatchRows<T>) {
+    let Some((&last, most)) = nodes.split_last() else { return };
+    for (row, &node) in rows.iter_mut().zip(most) {
+        let [own, next] = [values[node as usize], values[node as usize + 1]];
+        *row = [own.x, own.y, own.z, next.x];
+    }
+    let Vec3 { x, y, z } = values[last as usize];
+    rows[most.len()] = [x, y, z, T::ZERO];
 }
 
 /// The force in a row.
