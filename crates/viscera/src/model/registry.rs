@@ -44,8 +44,6 @@ pub struct Claims {
     pub conservative: bool,
     /// Products are the derivative of the forces.
     pub exact_products: bool,
-    /// Products are symmetric: a·K b = b·K a.
-    pub symmetric_products: bool,
 }
 
 impl Claims {
@@ -60,7 +58,6 @@ impl Claims {
             passes_patch_test: true,
             conservative: true,
             exact_products: true,
-            symmetric_products: true,
         }
     }
 }
@@ -80,7 +77,6 @@ fn without_a_law(_law: LawKind, _hexahedra: bool) -> Claims {
         passes_patch_test: false,
         conservative: true,
         exact_products: true,
-        symmetric_products: true,
     }
 }
 

@@ -68,7 +68,6 @@ impl Corotational {
             passes_patch_test: true,
             conservative: has_energy,
             exact_products: false,
-            symmetric_products: true,
         }
     }
 

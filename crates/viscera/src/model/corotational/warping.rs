@@ -6,6 +6,10 @@
 //! A_i = Σ e e0ᵀ. Where neighbouring rotations differ, f_ij ≠ −f_ji: the forces on a bent body have a sum, ghost forces
 //! that push and turn it. This is what element-wise rotations cured, and the model is here to compare them with.
 //!
+//! Products are those of element-wise rotations, R_e K_e R_eᵀ dx, with R_e in the middle of the corners' R_i: symmetric, positive and
+//! blind to translations in any shape. The paper's R_i K_ij R_iᵀ are only the last, and conjugate gradients do not solve their systems
+//! where neighbours have turned differently: scrambled tissue never came back in linearised steps.
+//!
 //! Source: Müller, Dorsey, McMillan, Jagnow, Cutler, *Stable real-time deformations* (2002), section 4.
 
 use super::hooke::Hooke;
@@ -50,7 +54,6 @@ impl StiffnessWarping {
             passes_patch_test: true,
             conservative: false,
             exact_products: false,
-            symmetric_products: false,
         }
     }
 
@@ -187,29 +190,28 @@ impl<T: Scalar> WarpedTets<T> {
         polar(&(self.edges_at(node).map(moved).fold(Mat3::ZERO, |sum, moved| sum + moved) * self.fits[node]))
     }
 
-    /// The rotations that products use: those that were kept for them, or those at `x`.
-    fn rotations_of_products<'a>(&self, x: &[Vec3<T>], scratch: &'a mut Scratch<T>) -> &'a [T] {
-        let held = scratch.is_linearized;
-        let rotations = scratch.room_for_linearization(self.linearization_len());
-        let (products, forces) = rotations.split_at_mut(ROTATION * self.fits.len());
-        if !held {
-            self.rotate(x, forces);
+    /// R of every cell, from those of the nodes.
+    fn rotate_cells(&self, rotations: &[T], of_cells: &mut [T]) {
+        for (number, cell) in self.cells.iter().enumerate() {
+            let [a, b, c, d] = cell.corners.map(|node| read(rotations, node as usize));
+            write(of_cells, number, &polar(&(a + b + (c + d))));
         }
-        if held { products } else { forces }
     }
 
-    /// Adds R_p V σ(sym(R_pᵀ A) − `rest`) α_p for each corner of each cell, with A the gradient of `x` over the rest shape.
-    fn add(&self, x: &[Vec3<T>], rest: T, rotations: &[T], out: &mut [Vec3<T>]) {
-        for cell in self.cells.iter().filter(|cell| !cell.removed) {
-            let f = cell.gradient(x);
-            let [a, b, c] = cell.inverse.transpose().columns;
-            for (corner, gradient) in [-(a + b + c), a, b, c].into_iter().enumerate() {
-                let node = cell.corners[corner] as usize;
-                let r = read(rotations, node);
-                let strain = (r.transpose() * f - Mat3::diagonal(rest)).symmetric_part();
-                out[node] += r * (cell.hooke.stress(strain) * (gradient * cell.volume));
-            }
+    /// Keeps the rotations for products at `x`.
+    fn keep_rotations(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
+        let room = scratch.room_for_linearization(self.linearization_len());
+        let (of_cells, of_nodes) = room.split_at_mut(ROTATION * self.cells.len());
+        self.rotate(x, of_nodes);
+        self.rotate_cells(of_nodes, of_cells);
+    }
+
+    /// The rotations of the cells that products use: those that were kept for them, or those at `x`.
+    fn rotations_of_products<'a>(&self, x: &[Vec3<T>], scratch: &'a mut Scratch<T>) -> &'a [T] {
+        if !scratch.is_linearized {
+            self.keep_rotations(x, scratch);
         }
+        &scratch.room_for_linearization(self.linearization_len())[..ROTATION * self.cells.len()]
     }
 }
 
@@ -218,6 +220,12 @@ impl<T: Scalar> Cell<T> {
     fn gradient(&self, x: &[Vec3<T>]) -> Mat3<T> {
         let [a, b, c, d] = self.corners.map(|node| x[node as usize]);
         Mat3::from_columns(b - a, c - a, d - a) * self.inverse
+    }
+
+    /// α_0..α_3.
+    fn gradients(&self) -> [Vec3<T>; 4] {
+        let [a, b, c] = self.inverse.transpose().columns;
+        [-(a + b + c), a, b, c]
     }
 }
 
@@ -257,32 +265,44 @@ impl<T: Scalar> ForceModel<T> for WarpedTets<T> {
     }
 
     fn add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        let rotations = &mut scratch.room_for_linearization(self.linearization_len())[ROTATION * self.fits.len()..];
+        let rotations = &mut scratch.room_for_linearization(self.linearization_len())[ROTATION * self.cells.len()..];
         self.rotate(x, rotations);
-        self.add(x, T::ONE, rotations, out);
+        for cell in self.cells.iter().filter(|cell| !cell.removed) {
+            let f = cell.gradient(x);
+            for (&node, gradient) in cell.corners.iter().zip(cell.gradients()) {
+                let r = read(rotations, node as usize);
+                let strain = (r.transpose() * f - Mat3::IDENTITY).symmetric_part();
+                out[node as usize] += r * (cell.hooke.stress(strain) * (gradient * cell.volume));
+            }
+        }
     }
 
-    /// The rotations of products, then those of forces, which may be asked for elsewhere.
+    /// The rotations of the cells for products, then those of the nodes for forces, which may be asked for elsewhere.
     fn linearization_len(&self) -> usize {
-        2 * ROTATION * self.fits.len()
+        ROTATION * (self.cells.len() + self.fits.len())
     }
 
     fn linearize(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) {
-        self.rotate(x, &mut scratch.room_for_linearization(self.linearization_len())[..ROTATION * self.fits.len()]);
+        self.keep_rotations(x, scratch);
         scratch.is_linearized = true;
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.add(dx, T::ZERO, self.rotations_of_products(x, scratch), out);
+        let rotations = self.rotations_of_products(x, scratch);
+        for (number, cell) in self.cells.iter().enumerate().filter(|(_, cell)| !cell.removed) {
+            let r = read(rotations, number);
+            let stress = cell.hooke.stress((r.transpose() * cell.gradient(dx)).symmetric_part());
+            for (&node, gradient) in cell.corners.iter().zip(cell.gradients()) {
+                out[node as usize] += r * (stress * (gradient * cell.volume));
+            }
+        }
     }
 
     fn add_blocks(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, sink: &mut dyn BlockSink<T>) {
         let rotations = self.rotations_of_products(x, scratch);
-        for cell in self.cells.iter().filter(|cell| !cell.removed) {
-            let [a, b, c] = cell.inverse.transpose().columns;
-            let gradients = [-(a + b + c), a, b, c];
+        for (number, cell) in self.cells.iter().enumerate().filter(|(_, cell)| !cell.removed) {
+            let (r, gradients) = (read(rotations, number), cell.gradients());
             for (&row, p) in cell.corners.iter().zip(gradients) {
-                let r = read(rotations, row as usize);
                 for (&column, q) in cell.corners.iter().zip(gradients) {
                     if row == column || !sink.keeps_diagonal_only() {
                         sink.add(row, column, r * cell.hooke.block(p * cell.volume, q) * r.transpose());
