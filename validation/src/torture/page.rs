@@ -396,7 +396,9 @@ impl Trial {
         match (&self.outcome, self.case.obstacle()) {
             (Outcome::Refused(why) | Outcome::Undone(why), _) => why,
             (Outcome::Back, _) => "",
-            (Outcome::Elsewhere { is_steady: true, .. }, None) => "holds in another shape: take the model corotational on tetrahedra",
+            (Outcome::Elsewhere { is_steady: true, .. }, None) => {
+                "holds in another shape: take the model corotational on tetrahedra"
+            }
             (_, None) => "",
             (_, Some(Obstacle::Mirror)) => "blind to reflections: take stable-neo-hookean",
             (_, Some(Obstacle::Symmetry)) => "no direction is better than another",
