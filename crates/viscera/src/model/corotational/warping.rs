@@ -7,8 +7,9 @@
 //! that push and turn it. This is what element-wise rotations cured, and the model is here to compare them with.
 //!
 //! Products are those of element-wise rotations, R_e K_e R_eᵀ dx, with R_e in the middle of the corners' R_i: symmetric, positive and
-//! blind to translations in any shape. The paper's R_i K_ij R_iᵀ are only the last, and conjugate gradients do not solve their systems
-//! where neighbours have turned differently: scrambled tissue never came back in linearised steps.
+//! blind to translations in any shape. The paper's R_i K_ij R_iᵀ are blind to translations alone, and conjugate gradients do not solve
+//! their systems where neighbours have turned differently: scrambled tissue never came back in linearised steps. R_i K_ij R_jᵀ would be
+//! symmetric too, but hold a bent body against translations (5 % of a product).
 //!
 //! Source: Müller, Dorsey, McMillan, Jagnow, Cutler, *Stable real-time deformations* (2002), section 4.
 

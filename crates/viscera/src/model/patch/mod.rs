@@ -110,7 +110,7 @@ impl Patches {
         rows: &mut [PatchRows<T>; FIELDS],
     ) {
         for (rows, values) in rows.iter_mut().zip(fields) {
-            dispatch!(dispatch_level(), _simd => gather(self.nodes(patch), values, rows));
+            dispatch!(dispatch_level(), _simd => read_rows(self.nodes(patch), values, rows));
         }
     }
 
@@ -181,7 +181,7 @@ impl Patches {
 
 /// Reads nodes in ascending order. The fourth number of a row is whatever comes next: a row is one load and one store then.
 #[inline(always)]
-fn gather<T: Scalar>(nodes: &[u32], values: &[Vec3<T>], rows: &mut PatchRows<T>) {
+fn read_rows<T: Scalar>(nodes: &[u32], values: &[Vec3<T>], rows: &mut PatchRows<T>) {
     let Some((&last, most)) = nodes.split_last() else { return };
     for (row, &node) in rows.iter_mut().zip(most) {
         let [own, next] = [values[node as usize], values[node as usize + 1]];
