@@ -52,17 +52,17 @@ impl<R: Real> Law<R> for StVenantKirchhoff<R> {
 
     #[inline(always)]
     fn stiffness_bound(&self, f: &Mat3<R>) -> R {
-        self.bound_of(f.gram().largest_eigenvalue_bound(), green_strain(f).trace())
+        self.bound_of(f.gram().largest_eigenvalue_bound(), green_strain(f).trace(), self.mu.like(1.0))
     }
 }
 
 impl<R: Real> StVenantKirchhoff<R> {
-    /// The bound of the stiffness for one of the largest eigenvalue of C, `stretch`, and tr E.
+    /// The bound of the stiffness for one of the largest eigenvalue of C, `stretch`, and tr E, all of them times `unit`.
     ///
     /// dF:dP = S:(dFᵀdF) + dE:C:dE with |dE| ≤ ‖F‖ |dF|, and S = λ tr E I + μ (C − I).
     #[inline(always)]
-    pub(crate) fn bound_of(&self, stretch: R, trace: R) -> R {
-        let stress = self.lambda * trace + self.mu * (stretch + stretch.like(-1.0));
+    pub(crate) fn bound_of(&self, stretch: R, trace: R, unit: R) -> R {
+        let stress = self.lambda * trace + self.mu * (stretch - unit);
         stretch.mul_add(isotropic_bound(self.lambda, self.mu), stress.max(stress.zero_like()))
     }
 }

@@ -134,14 +134,33 @@ pub trait Lanes<T: Scalar, S: Simd>: Real {
     fn store(self, part: Part<S>, column: &mut [T]);
     /// The same value in every lane.
     fn splat(simd: S, value: T) -> Self;
-    /// Reads four numbers per lane, lane `i` from `rows[nodes[i]]`, and gives them column by column.
+    /// Reads four numbers per lane, lane `i` from `rows[start(i)]` on, and gives them column by column.
     ///
     /// Rows are loaded whole and transposed in registers: single loads into an array, read back as one vector,
     /// stall on store forwarding (three times slower, measured).
-    fn gather(simd: S, rows: &[[T; 4]], nodes: &[u32]) -> [Self; 4];
-    /// Adds three numbers per lane, lane `i` to the first three of `rows[nodes[i]]`, lane after lane: lanes may name the
-    /// same row.
-    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[T; 4]]);
+    fn gather_from(simd: S, rows: &[T], start: impl Fn(usize) -> usize + Copy) -> [Self; 4];
+    /// Adds three numbers per lane, lane `i` to those from `rows[start(i)]` on, lane after lane: lanes may name the same row.
+    fn scatter_add_from(columns: [Self; 3], start: impl Fn(usize) -> usize + Copy, rows: &mut [T]);
+    /// [`Lanes::gather_from`] of whole rows, lane `i` from `rows[nodes[i]]`.
+    #[inline(always)]
+    fn gather(simd: S, rows: &[[T; 4]], nodes: &[u32]) -> [Self; 4] {
+        Self::gather_from(
+            simd,
+            rows.as_flattened(),
+            #[inline(always)]
+            |lane| 4 * nodes[lane] as usize,
+        )
+    }
+    /// [`Lanes::scatter_add_from`] of whole rows, lane `i` to the first three numbers of `rows[nodes[i]]`.
+    #[inline(always)]
+    fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[T; 4]]) {
+        Self::scatter_add_from(
+            columns,
+            #[inline(always)]
+            |lane| 4 * nodes[lane] as usize,
+            rows.as_flattened_mut(),
+        );
+    }
 }
 
 macro_rules! impl_scalar {
@@ -193,12 +212,12 @@ macro_rules! impl_lanes {
                 SimdBase::splat(simd, value)
             }
             #[inline(always)]
-            fn gather(simd: S, rows: &[[$scalar; 4]], nodes: &[u32]) -> [Self; 4] {
-                $gather(simd, rows, nodes)
+            fn gather_from(simd: S, rows: &[$scalar], start: impl Fn(usize) -> usize + Copy) -> [Self; 4] {
+                $gather(simd, rows, start)
             }
             #[inline(always)]
-            fn scatter_add(columns: [Self; 3], nodes: &[u32], rows: &mut [[$scalar; 4]]) {
-                $add(columns, nodes, rows);
+            fn scatter_add_from(columns: [Self; 3], start: impl Fn(usize) -> usize + Copy, rows: &mut [$scalar]) {
+                $add(columns, start, rows);
             }
         }
 

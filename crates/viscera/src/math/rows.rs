@@ -2,15 +2,32 @@
 //!
 //! A register takes rows of two lanes that are half a batch apart into its halves: what is left of the transpose then stays within the halves,
 //! where a shuffle takes one cycle, and takes seven of them for eight lanes in place of eleven.
+//!
+//! Where a row begins is told by the number that it begins with, as processors multiply by four or eight where they address, but not by sixteen.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x2, f64x4, f64x8};
 
+/// The number that the row of a lane begins with.
+pub(super) trait Start: Fn(usize) -> usize + Copy {}
+
+impl<F: Fn(usize) -> usize + Copy> Start for F {}
+
+#[inline(always)]
+fn row<T>(rows: &[T], start: usize) -> &[T] {
+    &rows[start..start + 4]
+}
+
+#[inline(always)]
+fn row_mut<T>(rows: &mut [T], start: usize) -> &mut [T] {
+    &mut rows[start..start + 4]
+}
+
 /// Columns of eight rows.
 #[inline(always)]
-pub(super) fn gather_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> [f32x8<S>; 4] {
-    let (a, b) = (two_singles(simd, rows, nodes, 0), two_singles(simd, rows, nodes, 1));
-    let (c, d) = (two_singles(simd, rows, nodes, 2), two_singles(simd, rows, nodes, 3));
+pub(super) fn gather_singles<S: Simd>(simd: S, rows: &[f32], start: impl Start) -> [f32x8<S>; 4] {
+    let (a, b) = (two_singles(simd, rows, start, 0), two_singles(simd, rows, start, 1));
+    let (c, d) = (two_singles(simd, rows, start, 2), two_singles(simd, rows, start, 3));
     let (xy_even, xy_odd) = (zip_low_singles(a, c), zip_low_singles(b, d));
     let (zw_even, zw_odd) = (zip_high_singles(a, c), zip_high_singles(b, d));
     [
@@ -23,9 +40,9 @@ pub(super) fn gather_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32])
 
 /// Columns of sixteen rows.
 #[inline(always)]
-pub(super) fn gather_wide_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32]) -> [f32x16<S>; 4] {
-    let (a, b) = (four_singles(simd, rows, nodes, 0), four_singles(simd, rows, nodes, 1));
-    let (c, d) = (four_singles(simd, rows, nodes, 2), four_singles(simd, rows, nodes, 3));
+pub(super) fn gather_wide_singles<S: Simd>(simd: S, rows: &[f32], start: impl Start) -> [f32x16<S>; 4] {
+    let (a, b) = (four_singles(simd, rows, start, 0), four_singles(simd, rows, start, 1));
+    let (c, d) = (four_singles(simd, rows, start, 2), four_singles(simd, rows, start, 3));
     let (xy_even, xy_odd) = (zip_low_wide(a, c), zip_low_wide(b, d));
     let (zw_even, zw_odd) = (zip_high_wide(a, c), zip_high_wide(b, d));
     [
@@ -38,33 +55,33 @@ pub(super) fn gather_wide_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[
 
 /// Adds three columns to the first three numbers of eight rows, row after row: they may be the same.
 #[inline(always)]
-pub(super) fn add_singles<S: Simd>([x, y, z]: [f32x8<S>; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
+pub(super) fn add_singles<S: Simd>([x, y, z]: [f32x8<S>; 3], start: impl Start, rows: &mut [f32]) {
     let zero: f32x8<S> = SimdBase::splat(x.token(), 0.0);
     let (xz_low, xz_high) = (zip_low_singles(x, z), zip_high_singles(x, z));
     let (y_low, y_high) = (zip_low_singles(y, zero), zip_high_singles(y, zero));
-    add_two_singles(zip_low_singles(xz_low, y_low), nodes, 0, rows);
-    add_two_singles(zip_high_singles(xz_low, y_low), nodes, 1, rows);
-    add_two_singles(zip_low_singles(xz_high, y_high), nodes, 2, rows);
-    add_two_singles(zip_high_singles(xz_high, y_high), nodes, 3, rows);
+    add_two_singles(zip_low_singles(xz_low, y_low), start, 0, rows);
+    add_two_singles(zip_high_singles(xz_low, y_low), start, 1, rows);
+    add_two_singles(zip_low_singles(xz_high, y_high), start, 2, rows);
+    add_two_singles(zip_high_singles(xz_high, y_high), start, 3, rows);
 }
 
 /// The same for sixteen rows.
 #[inline(always)]
-pub(super) fn add_wide_singles<S: Simd>([x, y, z]: [f32x16<S>; 3], nodes: &[u32], rows: &mut [[f32; 4]]) {
+pub(super) fn add_wide_singles<S: Simd>([x, y, z]: [f32x16<S>; 3], start: impl Start, rows: &mut [f32]) {
     let zero: f32x16<S> = SimdBase::splat(x.token(), 0.0);
     let (xz_low, xz_high) = (zip_low_wide(x, z), zip_high_wide(x, z));
     let (y_low, y_high) = (zip_low_wide(y, zero), zip_high_wide(y, zero));
-    add_four_singles(zip_low_wide(xz_low, y_low), nodes, 0, rows);
-    add_four_singles(zip_high_wide(xz_low, y_low), nodes, 1, rows);
-    add_four_singles(zip_low_wide(xz_high, y_high), nodes, 2, rows);
-    add_four_singles(zip_high_wide(xz_high, y_high), nodes, 3, rows);
+    add_four_singles(zip_low_wide(xz_low, y_low), start, 0, rows);
+    add_four_singles(zip_high_wide(xz_low, y_low), start, 1, rows);
+    add_four_singles(zip_low_wide(xz_high, y_high), start, 2, rows);
+    add_four_singles(zip_high_wide(xz_high, y_high), start, 3, rows);
 }
 
 /// Columns of four rows.
 #[inline(always)]
-pub(super) fn gather_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32]) -> [f64x4<S>; 4] {
-    let (xy_even, zw_even) = two_doubles(simd, rows, nodes, 0);
-    let (xy_odd, zw_odd) = two_doubles(simd, rows, nodes, 1);
+pub(super) fn gather_doubles<S: Simd>(simd: S, rows: &[f64], start: impl Start) -> [f64x4<S>; 4] {
+    let (xy_even, zw_even) = two_doubles(simd, rows, start, 0);
+    let (xy_odd, zw_odd) = two_doubles(simd, rows, start, 1);
     [
         zip_low_doubles(xy_even, xy_odd),
         zip_high_doubles(xy_even, xy_odd),
@@ -75,73 +92,83 @@ pub(super) fn gather_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32])
 
 /// Columns of eight rows.
 #[inline(always)]
-pub(super) fn gather_wide_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32]) -> [f64x8<S>; 4] {
-    let [a, b, c, d] = gather_doubles(simd, rows, nodes);
-    let [e, f, g, h] = gather_doubles(simd, rows, &nodes[4..]);
+pub(super) fn gather_wide_doubles<S: Simd>(simd: S, rows: &[f64], start: impl Start) -> [f64x8<S>; 4] {
+    let [a, b, c, d] = gather_doubles(simd, rows, start);
+    let [e, f, g, h] = gather_doubles(
+        simd,
+        rows,
+        #[inline(always)]
+        move |lane| start(lane + 4),
+    );
     [a.combine(e), b.combine(f), c.combine(g), d.combine(h)]
 }
 
 /// Adds three columns to the first three numbers of four rows, row after row: they may be the same.
 #[inline(always)]
-pub(super) fn add_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
+pub(super) fn add_doubles<S: Simd>([x, y, z]: [f64x4<S>; 3], start: impl Start, rows: &mut [f64]) {
     let zero: f64x4<S> = SimdBase::splat(x.token(), 0.0);
-    add_two_doubles(zip_low_doubles(x, y), zip_low_doubles(z, zero), nodes, 0, rows);
-    add_two_doubles(zip_high_doubles(x, y), zip_high_doubles(z, zero), nodes, 1, rows);
+    add_two_doubles(zip_low_doubles(x, y), zip_low_doubles(z, zero), start, 0, rows);
+    add_two_doubles(zip_high_doubles(x, y), zip_high_doubles(z, zero), start, 1, rows);
 }
 
 /// The same for eight rows.
 #[inline(always)]
-pub(super) fn add_wide_doubles<S: Simd>([x, y, z]: [f64x8<S>; 3], nodes: &[u32], rows: &mut [[f64; 4]]) {
+pub(super) fn add_wide_doubles<S: Simd>([x, y, z]: [f64x8<S>; 3], start: impl Start, rows: &mut [f64]) {
     let ((x_low, x_high), (y_low, y_high), (z_low, z_high)) = (x.split(), y.split(), z.split());
-    add_doubles([x_low, y_low, z_low], nodes, rows);
-    add_doubles([x_high, y_high, z_high], &nodes[4..], rows);
+    add_doubles([x_low, y_low, z_low], start, rows);
+    add_doubles(
+        [x_high, y_high, z_high],
+        #[inline(always)]
+        move |lane| start(lane + 4),
+        rows,
+    );
 }
 
 /// The rows of a lane and of the one four behind it.
 #[inline(always)]
-fn two_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32], lane: usize) -> f32x8<S> {
-    let first = f32x4::from_slice(simd, &rows[nodes[lane] as usize]);
-    first.combine(f32x4::from_slice(simd, &rows[nodes[lane + 4] as usize]))
+fn two_singles<S: Simd>(simd: S, rows: &[f32], start: impl Start, lane: usize) -> f32x8<S> {
+    let first = f32x4::from_slice(simd, row(rows, start(lane)));
+    first.combine(f32x4::from_slice(simd, row(rows, start(lane + 4))))
 }
 
 /// The rows of a lane and of those four, eight and twelve behind it.
 #[inline(always)]
-fn four_singles<S: Simd>(simd: S, rows: &[[f32; 4]], nodes: &[u32], lane: usize) -> f32x16<S> {
-    two_singles(simd, rows, nodes, lane).combine(two_singles(simd, rows, nodes, lane + 8))
+fn four_singles<S: Simd>(simd: S, rows: &[f32], start: impl Start, lane: usize) -> f32x16<S> {
+    two_singles(simd, rows, start, lane).combine(two_singles(simd, rows, start, lane + 8))
 }
 
 #[inline(always)]
-fn add_two_singles<S: Simd>(added: f32x8<S>, nodes: &[u32], lane: usize, rows: &mut [[f32; 4]]) {
+fn add_two_singles<S: Simd>(added: f32x8<S>, start: impl Start, lane: usize, rows: &mut [f32]) {
     let (first, second) = added.split();
-    let row = &mut rows[nodes[lane] as usize];
+    let row = row_mut(rows, start(lane));
     (f32x4::from_slice(first.token(), row) + first).store_slice(row);
-    let row = &mut rows[nodes[lane + 4] as usize];
+    let row = row_mut(rows, start(lane + 4));
     (f32x4::from_slice(second.token(), row) + second).store_slice(row);
 }
 
 #[inline(always)]
-fn add_four_singles<S: Simd>(added: f32x16<S>, nodes: &[u32], lane: usize, rows: &mut [[f32; 4]]) {
+fn add_four_singles<S: Simd>(added: f32x16<S>, start: impl Start, lane: usize, rows: &mut [f32]) {
     let (first, second) = added.split();
-    add_two_singles(first, nodes, lane, rows);
-    add_two_singles(second, nodes, lane + 8, rows);
+    add_two_singles(first, start, lane, rows);
+    add_two_singles(second, start, lane + 8, rows);
 }
 
 /// The first halves of the rows of a lane and of the one two behind it, and the second ones.
 #[inline(always)]
-fn two_doubles<S: Simd>(simd: S, rows: &[[f64; 4]], nodes: &[u32], lane: usize) -> (f64x4<S>, f64x4<S>) {
-    let (first, second) = (&rows[nodes[lane] as usize], &rows[nodes[lane + 2] as usize]);
+fn two_doubles<S: Simd>(simd: S, rows: &[f64], start: impl Start, lane: usize) -> (f64x4<S>, f64x4<S>) {
+    let (first, second) = (row(rows, start(lane)), row(rows, start(lane + 2)));
     let xy = f64x2::from_slice(simd, &first[..2]).combine(f64x2::from_slice(simd, &second[..2]));
     let zw = f64x2::from_slice(simd, &first[2..]).combine(f64x2::from_slice(simd, &second[2..]));
     (xy, zw)
 }
 
 #[inline(always)]
-fn add_two_doubles<S: Simd>(xy: f64x4<S>, zw: f64x4<S>, nodes: &[u32], lane: usize, rows: &mut [[f64; 4]]) {
+fn add_two_doubles<S: Simd>(xy: f64x4<S>, zw: f64x4<S>, start: impl Start, lane: usize, rows: &mut [f64]) {
     let ((first_xy, second_xy), (first_zw, second_zw)) = (xy.split(), zw.split());
     let (first, second) = (first_xy.combine(first_zw), second_xy.combine(second_zw));
-    let row = &mut rows[nodes[lane] as usize];
+    let row = row_mut(rows, start(lane));
     (f64x4::from_slice(first.token(), row) + first).store_slice(row);
-    let row = &mut rows[nodes[lane + 2] as usize];
+    let row = row_mut(rows, start(lane + 2));
     (f64x4::from_slice(second.token(), row) + second).store_slice(row);
 }
 
@@ -224,23 +251,23 @@ mod tests {
         let double: Vec<[f64; 4]> = single.iter().map(|row| row.map(f64::from)).collect();
         let (mut singles, mut doubles) = (vec![[0.0; 4]; 8], vec![[0.0; 4]; 8]);
         dispatch!(dispatch_level(), simd => {
-            let [x, y, z, w] = gather_singles(simd, &single, &nodes);
+            let [x, y, z, w] = gather_singles(simd, single.as_flattened(), |lane| 4 * nodes[lane]);
             for (column, lanes) in [x, y, z, w].into_iter().enumerate() {
-                let expected: Vec<f32> = nodes.iter().map(|&node| single[node as usize][column]).collect();
+                let expected: Vec<f32> = nodes.iter().map(|&node| single[node][column]).collect();
                 assert_eq!(lanes.as_slice(), expected);
             }
-            add_singles([x, y, z], &nodes, &mut singles);
+            add_singles([x, y, z], |lane| 4 * nodes[lane], singles.as_flattened_mut());
             for nodes in nodes.chunks(4) {
-                let [x, y, z, w] = gather_doubles(simd, &double, nodes);
+                let [x, y, z, w] = gather_doubles(simd, double.as_flattened(), |lane| 4 * nodes[lane]);
                 for (column, lanes) in [x, y, z, w].into_iter().enumerate() {
-                    let expected: Vec<f64> = nodes.iter().map(|&node| double[node as usize][column]).collect();
+                    let expected: Vec<f64> = nodes.iter().map(|&node| double[node][column]).collect();
                     assert_eq!(lanes.as_slice(), expected);
                 }
-                add_doubles([x, y, z], nodes, &mut doubles);
+                add_doubles([x, y, z], |lane| 4 * nodes[lane], doubles.as_flattened_mut());
             }
         });
         for row in 0..8 {
-            let times = nodes.iter().filter(|&&node| node as usize == row).count() as f64;
+            let times = nodes.iter().filter(|&&node| node == row).count() as f64;
             let expected: [f64; 4] =
                 std::array::from_fn(|column| if column < 3 { times * double[row][column] } else { 0.0 });
             assert_eq!(doubles[row], expected);

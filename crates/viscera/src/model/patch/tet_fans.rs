@@ -2,7 +2,7 @@ use super::batch::Batch;
 use super::deal::{deal, halves_share_no_node};
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::{Fan, LONGEST, fans};
-use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, indices};
+use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, starts};
 use super::{PatchRows, Patches, PerPatch, clear, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
@@ -22,8 +22,8 @@ pub(crate) struct TetFans {
     /// Where the batches of each patch begin, and the end.
     batch_starts: Vec<usize>,
     batches: Vec<Batch>,
-    /// Nodes of the batches by their numbers within the patch: axis, then ring, each for all lanes; of fans that close, the ring
-    /// once around.
+    /// Nodes of the batches by the numbers that their rows in the patch begin with, four times their own: axis, then ring, each for all
+    /// lanes; of fans that close, the ring once around.
     nodes: Vec<u32>,
     /// Where the slots of each patch begin, and the end.
     slot_starts: Vec<usize>,
@@ -83,10 +83,10 @@ impl TetFans {
         self.batches.push(batch);
         let fan = |lane: usize| fans.get(lane).unwrap_or(&fans[0]);
         for end in 0..2 {
-            self.nodes.extend((0..self.lanes).map(|lane| fan(lane).axis[end]));
+            self.nodes.extend((0..self.lanes).map(|lane| 4 * fan(lane).axis[end]));
         }
         for place in 0..batch.ring() {
-            self.nodes.extend((0..self.lanes).map(|lane| ring_node(fan(lane), place)));
+            self.nodes.extend((0..self.lanes).map(|lane| 4 * ring_node(fan(lane), place)));
         }
         for slot in 0..length {
             for lane in 0..self.lanes {
@@ -131,8 +131,9 @@ impl TetFans {
             self.batches[ends[0]..ends[1]].iter().map(move |batch| (self.patches.nodes(patch), batch))
         });
         batches.flat_map(move |(nodes, batch)| {
-            let node =
-                move |place: usize, lane: usize| nodes[self.nodes[batch.nodes + place * self.lanes + lane] as usize];
+            let node = move |place: usize, lane: usize| {
+                nodes[self.nodes[batch.nodes + place * self.lanes + lane] as usize / 4]
+            };
             (0..batch.length * self.lanes).map(move |number| {
                 let (slot, lane) = (number / self.lanes, number % self.lanes);
                 let row = batch.slot * self.lanes + number;
@@ -442,10 +443,10 @@ fn gather<T: Scalar, S: Simd, const FIELDS: usize>(
     fields: [&PatchRows<T>; FIELDS],
     nodes: &[u32],
 ) -> [Vec3<T::Lanes<S>>; FIELDS] {
-    let indices = indices::<T, S, T::Lanes<S>>(part, nodes);
+    let start = starts::<T, S, T::Lanes<S>>(part, nodes);
     let mut places = [Vec3::splat(T::Lanes::<S>::splat(part.simd, T::ZERO)); FIELDS];
     for field in 0..FIELDS {
-        let [x, y, z, _] = T::Lanes::<S>::gather(part.simd, fields[field], &indices[..T::Lanes::<S>::COUNT]);
+        let [x, y, z, _] = T::Lanes::<S>::gather_from(part.simd, fields[field].as_flattened(), start);
         places[field] = Vec3::new(x, y, z);
     }
     places

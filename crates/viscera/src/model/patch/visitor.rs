@@ -3,7 +3,7 @@
 use super::element::{Deformed, Diagonal, Element, Measure, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
-use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::model::lane_vector::{self, Kept, take_up};
 
 /// Whoever is led along the fans, a batch at a time.
@@ -47,8 +47,8 @@ impl BatchNodes<'_> {
     }
 }
 
-/// How many slots a loop looks ahead.
-const AHEAD: usize = 4;
+/// How many slots a loop looks ahead: with four, a million tetrahedra take a sixth longer.
+const AHEAD: usize = 12;
 
 /// Who knows the forces of the tetrahedra of a slot.
 pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
@@ -304,19 +304,18 @@ impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::L
     }
 }
 
-/// Numbers of the nodes of all lanes, modulo the size of a patch: the compiler sees that they are good.
+/// Where the rows of the nodes of all lanes begin, modulo the size of a patch: the compiler sees that they are good.
 #[inline(always)]
-pub(super) fn indices<T: Scalar, S: Simd, L: Lanes<T, S>>(part: Part<S>, nodes: &[u32]) -> [u32; MAX_LANES] {
+pub(super) fn starts<T: Scalar, S: Simd, L: Lanes<T, S>>(
+    part: Part<S>,
+    nodes: &[u32],
+) -> impl Fn(usize) -> usize + Copy {
     let nodes = part.of::<T, L, _>(nodes);
-    let mut indices = [0; MAX_LANES];
-    for lane in 0..L::COUNT {
-        indices[lane] = nodes[lane] % PATCH_NODES as u32;
-    }
-    indices
+    #[inline(always)]
+    move |lane| nodes[lane] as usize % (4 * PATCH_NODES) / 4 * 4
 }
 
 #[inline(always)]
 fn add<T: Scalar, S: Simd, R: Lanes<T, S>>(part: Part<S>, force: Vec3<R>, nodes: &[u32], sums: &mut PatchRows<T>) {
-    let indices = indices::<T, S, R>(part, nodes);
-    R::scatter_add(force.to_array(), &indices[..R::COUNT], sums);
+    R::scatter_add_from(force.to_array(), starts::<T, S, R>(part, nodes), sums.as_flattened_mut());
 }

@@ -4,38 +4,47 @@
 //!
 //! [f1 f2 f3] = V μ' (1 − 1/(I_C + 1)) D A0 + V [λ' (J − 1) − ¾μ'] cof D / det Dm
 //!
-//! because P Dm⁻ᵀ needs F Dm⁻ᵀ = D A0 and cof F Dm⁻ᵀ = cof D / det Dm only. About 125 flops.
+//! because P Dm⁻ᵀ needs F Dm⁻ᵀ = D A0 and cof F Dm⁻ᵀ = cof D / det Dm only. Along [edges that are orthogonal at rest](super::orthogonal)
+//! D A0 = B Δ Lᵀ and cof D = cof B Lᵀ. About 125 flops.
 
 use super::super::block_table::BlockTable;
 use super::super::kernel_bound::BoundedKernel;
 use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
-use super::metric::{at_corners, columns_at_corners};
+use super::orthogonal::{UnitLower, at_corners, columns_at_corners, orthogonal};
 use crate::material::{LawFamily, StableNeoHookean};
-use crate::math::{Mat3, Real, Scalar, Sym3};
+use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
-/// Constants: A0 (xx, yy, zz, xy, xz, yz), 1/det Dm, Vλ', Vμ'.
+/// Constants: L (yx, zx, zy), δ (x, y, z), 1/det Dm, Vλ', Vμ'.
 #[derive(Clone, Debug)]
 pub(super) struct StableNeoHookeanMetric;
 
 impl StableNeoHookeanMetric {
     pub(super) fn constants(rest: &RestTet, law: &[f64]) -> Vec<f64> {
-        let a0 = rest.inverse.transpose().gram();
+        let (UnitLower { yx, zx, zy }, Vec3 { x, y, z }) = orthogonal(rest);
         let (lambda, mu) = StableNeoHookean::from_values(law).rescaled();
         let inverse_determinant = 1.0 / (6.0 * rest.volume);
-        let moduli = [inverse_determinant, rest.volume * lambda, rest.volume * mu];
-        [a0.xx, a0.yy, a0.zz, a0.xy, a0.xz, a0.yz].into_iter().chain(moduli).collect()
+        vec![yx, zx, zy, x, y, z, inverse_determinant, rest.volume * lambda, rest.volume * mu]
     }
 }
 
+/// L.
 #[inline(always)]
-fn metric<R: Real>(c: &[R]) -> Sym3<R> {
-    Sym3 { xx: c[0], yy: c[1], zz: c[2], xy: c[3], xz: c[4], yz: c[5] }
+fn lower<R: Real>(c: &[R]) -> UnitLower<R> {
+    UnitLower { yx: c[0], zx: c[1], zy: c[2] }
 }
 
-/// I_C = A0:DᵀD, which rounding makes negative in slivers: the energy of some was no number in single precision.
+/// I_C = Σ δ_i |b_i|².
 #[inline(always)]
-fn not_negative<R: Real>(invariant: R) -> R {
-    invariant.max(invariant.like(0.0))
+fn first_invariant<R: Real>(c: &[R], b: &Mat3<R>) -> R {
+    let [x, y, z] = b.columns;
+    c[3].mul_add(x.dot(x), c[4].mul_add(y.dot(y), c[5] * z.dot(z)))
+}
+
+/// B Δ `factor`.
+#[inline(always)]
+fn stretched<R: Real>(c: &[R], b: &Mat3<R>, factor: R) -> Mat3<R> {
+    let [x, y, z] = b.columns;
+    Mat3::from_columns(x * (c[3] * factor), y * (c[4] * factor), z * (c[5] * factor))
 }
 
 /// V [λ' (J − 1) − ¾μ'] / det Dm.
@@ -51,15 +60,16 @@ fn over_squared_determinant<R: Real>(c: &[R]) -> R {
     c[7] * c[6] * c[6]
 }
 
-// ‖cof F‖² = cof A0 : (cof D)ᵀ cof D, as cof F = cof D cof Dm⁻¹.
+// ‖cof F‖² = Σ δ_j δ_k |b_j × b_k|².
 impl BoundedKernel for StableNeoHookeanMetric {
     #[inline(always)]
     fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let (a0, cofactor) = (metric(c), d.cofactor());
-        let square = not_negative((*d * a0).contract(*d));
-        let area = not_negative(a0.cofactor().contract(cofactor.gram()));
-        let determinant = d.columns[0].dot(cofactor.columns[0]) * c[6];
-        StableNeoHookean::<R>::bound_of((c[7], c[8]), square, area, determinant)
+        let b = lower(c).after(d);
+        let cofactor = b.cofactor();
+        let [x, y, z] = cofactor.columns;
+        let area = (c[4] * c[5]) * x.dot(x) + (c[3] * c[5]) * y.dot(y) + (c[3] * c[4]) * z.dot(z);
+        let determinant = b.columns[0].dot(x) * c[6];
+        StableNeoHookean::<R>::bound_of((c[7], c[8]), first_invariant(c, &b), area, determinant)
     }
 }
 
@@ -78,12 +88,14 @@ impl TetKernel for StableNeoHookeanMetric {
     // The area vector cof D_i of a face does not change with the corner opposite to it: the pressure adds nothing.
     #[inline(always)]
     fn diagonal<R: Real>(c: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
-        let (a0, one) = (metric(c), c[0].like(1.0));
-        let stretched = *d * a0;
-        let share = one / (not_negative(stretched.contract(*d)) + one);
-        let (own, areas) = (columns_at_corners(&stretched), columns_at_corners(&d.cofactor()));
-        let (metrics, volume) = (at_corners(a0), over_squared_determinant(c));
-        let mut blocks = [a0; 4];
+        let (lower, one, zero) = (lower(c), c[0].like(1.0), c[0].zero_like());
+        let b = lower.after(d);
+        let share = one / (first_invariant(c, &b) + one);
+        let own = columns_at_corners(&lower.transposed_after(&stretched(c, &b, one)));
+        let areas = columns_at_corners(&lower.transposed_after(&b.cofactor()));
+        let metric = lower.around(Sym3 { xx: c[3], yy: c[4], zz: c[5], xy: zero, xz: zero, yz: zero });
+        let (metrics, volume) = (at_corners(metric), over_squared_determinant(c));
+        let mut blocks = [metric; 4];
         for corner in 0..4 {
             blocks[corner] = Sym3::square(own[corner]) * (c[8] * share.squared()).double()
                 + Sym3::square(areas[corner]) * volume
@@ -94,9 +106,9 @@ impl TetKernel for StableNeoHookeanMetric {
 
     #[inline(always)]
     fn energy<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let one = c[0].like(1.0);
-        let excess = not_negative(metric(c).contract(d.gram())) - one.like(3.0);
-        let change = d.determinant().mul_add(c[6], one.like(-1.0));
+        let (b, one) = (lower(c).after(d), c[0].like(1.0));
+        let excess = first_invariant(c, &b) - one.like(3.0);
+        let change = b.determinant().mul_add(c[6], one.like(-1.0));
         let logarithm = excess.mul_add(one.like(0.25), one).ln();
         let shape = (excess - logarithm).half() - change * one.like(0.75);
         c[8] * shape + (c[7] * change.squared()).half()
@@ -104,25 +116,28 @@ impl TetKernel for StableNeoHookeanMetric {
 
     #[inline(always)]
     fn forces<R: Real>(c: &[R], d: &Mat3<R>) -> Mat3<R> {
-        let (a0, one) = (metric(c), c[0].like(1.0));
-        let (cofactor, stretched) = (d.cofactor(), *d * a0);
-        let shape = c[8] * (one - one / (not_negative(stretched.contract(*d)) + one));
-        let pressure = pressure(c, d.columns[0].dot(cofactor.columns[0]));
-        cofactor.mul_add(pressure, stretched * shape)
+        let (lower, one) = (lower(c), c[0].like(1.0));
+        let b = lower.after(d);
+        let cofactor = b.cofactor();
+        let shape = c[8] * (one - one / (first_invariant(c, &b) + one));
+        let pressure = pressure(c, b.columns[0].dot(cofactor.columns[0]));
+        lower.transposed_after(&cofactor.mul_add(pressure, stretched(c, &b, shape)))
     }
 
-    // dI_C = 2 A0:DᵀdD
+    // dI_C = 2 Σ δ_i b_i·db_i
     #[inline(always)]
     fn product<R: Real>(c: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
-        let (a0, one) = (metric(c), c[0].like(1.0));
-        let cofactor = d.cofactor();
-        let share = one / (not_negative(a0.contract(d.gram())) + one);
-        let stretched = *d * a0;
-        let d_shape = (c[8] * share.squared() * stretched.contract(*dd)).double();
-        let d_pressure = over_squared_determinant(c) * cofactor.contract(*dd);
-        *dd * (a0 * (c[8] * (one - share)))
-            + stretched * d_shape
+        let (lower, one) = (lower(c), c[0].like(1.0));
+        let (b, db) = (lower.after(d), lower.after(dd));
+        let cofactor = b.cofactor();
+        let share = one / (first_invariant(c, &b) + one);
+        let direction = stretched(c, &b, one);
+        let d_shape = (c[8] * share.squared() * direction.contract(db)).double();
+        let d_pressure = over_squared_determinant(c) * cofactor.contract(db);
+        let forces = stretched(c, &db, c[8] * (one - share))
+            + direction * d_shape
             + cofactor * d_pressure
-            + d.cofactor_along(*dd) * pressure(c, d.columns[0].dot(cofactor.columns[0]))
+            + b.cofactor_along(db) * pressure(c, b.columns[0].dot(cofactor.columns[0]));
+        lower.transposed_after(&forces)
     }
 }
