@@ -1,4 +1,4 @@
-use std::collections::HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::{HexMesh, Mesh, SurfaceMesh, TET_EDGES, TET_FACES, TetMesh};
 
@@ -33,8 +33,10 @@ impl TetTopology {
     /// Finds edges and faces.
     pub fn new(mesh: &TetMesh) -> Self {
         let mut topology = Self::default();
-        let mut edge_of = HashMap::with_capacity(mesh.cells.len() * 2);
-        let mut face_of: HashMap<[u32; 3], u32> = HashMap::with_capacity(mesh.cells.len() * 2);
+        // Hashes that nobody can foresee, those of the standard library, take as long again.
+        let mut edge_of = FxHashMap::with_capacity_and_hasher(mesh.cells.len() * 2, FxBuildHasher);
+        let mut face_of: FxHashMap<[u32; 3], u32> =
+            FxHashMap::with_capacity_and_hasher(mesh.cells.len() * 2, FxBuildHasher);
         for (cell, corners) in mesh.cells.iter().enumerate() {
             topology.cell_edges.push(TET_EDGES.map(|[i, j]| {
                 let key = [corners[i].min(corners[j]), corners[i].max(corners[j])];
@@ -109,7 +111,8 @@ impl HexMesh {
     /// Every face once, in the order in which the cells meet them.
     pub fn faces(&self) -> Vec<Face<4>> {
         let mut faces: Vec<Face<4>> = Vec::new();
-        let mut face_of: HashMap<[u32; 4], usize> = HashMap::with_capacity(self.cells.len() * 4);
+        let mut face_of: FxHashMap<[u32; 4], usize> =
+            FxHashMap::with_capacity_and_hasher(self.cells.len() * 4, FxBuildHasher);
         for (cell, corners) in self.cells.iter().enumerate() {
             for local in super::HEX_FACES {
                 let nodes = local.map(|i| corners[i]);

@@ -5,7 +5,7 @@ use std::any::Any;
 use std::marker::PhantomData;
 
 use super::block_table::BlockTable;
-use super::frequency::{FrequencyBound, squared_frequency_at_rest};
+use super::frequency::{FrequencyBound, squared_frequency_of_tet};
 use super::patch::Measure;
 use super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop, TetMeasure};
 use super::{ModelError, Patches, Scratch};
@@ -53,7 +53,7 @@ pub(super) fn kernel_bound<T: Scalar, K: BoundedKernel, L: LawFamily>(
     let bound = TetLoop::<T, KernelBound<K>>::new(mesh, |rest| {
         let (law, mut constants) = of_cell(rest);
         let corner_mass = density(rest.cell) * rest.volume / 4.0;
-        let at_rest = squared_frequency_at_rest(&law, &[(&rest.gradients(), rest.volume)], corner_mass);
+        let at_rest = squared_frequency_of_tet(&law, rest, corner_mass);
         constants.push(at_rest / K::stiffness_bound(&constants, &rest.inverse.inverse()));
         constants
     })?;

@@ -3,7 +3,7 @@
 use super::ModelError;
 use super::Scratch;
 use super::block_table::BlockTable;
-use super::frequency::{FrequencyBound, squared_frequency_at_rest, volume_stiffness};
+use super::frequency::{FrequencyBound, squared_frequency_of_tet, volume_stiffness};
 use super::tet_loop::{RestTet, TetConstants, TetLoop, TetMeasure};
 use crate::material::{Lame, Law, LinearElastic};
 use crate::math::{Mat3, Real, Scalar, Vec3};
@@ -25,7 +25,7 @@ pub(super) fn with_penalty<T: Scalar>(
     let law = LinearElastic::new(Lame::new(1.0, 1.0).expect("both moduli are positive"));
     let numbers = |rest: &RestTet| {
         let corner_mass = density[if density.len() == 1 { 0 } else { rest.cell }] * rest.volume / 4.0;
-        let at_rest = squared_frequency_at_rest(&law, &[(&rest.gradients(), rest.volume)], corner_mass);
+        let at_rest = squared_frequency_of_tet(&law, rest, corner_mass);
         let inverse = rest.inverse.columns.into_iter().flat_map(Vec3::to_array);
         inverse.chain([at_rest / law.stiffness_bound(&Mat3::IDENTITY), keep_volume]).collect()
     };

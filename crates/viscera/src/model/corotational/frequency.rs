@@ -12,7 +12,7 @@ use crate::material::{Fibre, Law, LinearElastic, RestStiffness, Tissue, Transver
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 use crate::mesh::{GaussRule, VolumeMesh};
 use crate::model::block_table::BlockTable;
-use crate::model::frequency::{FrequencyBound, squared_frequency_at_rest, volume_stiffness};
+use crate::model::frequency::{FrequencyBound, squared_frequency_at_rest, squared_frequency_of_tet, volume_stiffness};
 use crate::model::tet_loop::{RestTet, TetConstants, TetLoop, TetMeasure};
 use crate::model::total_lagrangian::hex::deformation;
 use crate::model::{ModelError, Scratch};
@@ -33,7 +33,7 @@ pub(super) fn bound<T: Scalar>(
             let numbers = |rest: &RestTet| {
                 let law = linear(&tissue.at_rest(rest.cell));
                 let corner_mass = density(rest.cell) * rest.volume / 4.0;
-                let at_rest = squared_frequency_at_rest(&law, &[(&rest.gradients(), rest.volume)], corner_mass);
+                let at_rest = squared_frequency_of_tet(&law, rest, corner_mass);
                 let penalty = keep_volume / law.stiffness_bound(&Mat3::IDENTITY);
                 let inverse = rest.inverse.columns.into_iter().flat_map(Vec3::to_array);
                 inverse.chain([at_rest, penalty, f64::from(updated), f64::from(current)]).collect()
