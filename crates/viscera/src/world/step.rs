@@ -3,9 +3,9 @@
 use super::{Integrator, StepError, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
-use crate::executor::Executor;
+use crate::executor::{Executor, NODE_BLOCK, node_blocks};
 use crate::instrument::Span;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::stage::{Stage, StageObserver, Stages};
 
 /// Cells from which on threads pay. A step of 6 000 cells took a fifth longer on two threads than on one.
@@ -168,18 +168,25 @@ impl<T: Scalar> SimulatedBody<T> {
     /// Whether every number is finite, and no node was thrown in the step.
     pub(super) fn is_within_bounds(&self) -> bool {
         let farthest = T::from_f64(THROWN * self.size);
-        let ends = self.state.positions.iter().zip(&self.state.velocities);
-        // Without a branch for each node: one after the other takes four times as long.
-        let within = |from: Vec3<T>, to: Vec3<T>, velocity: Vec3<T>| {
-            let sum = to.x + to.y + to.z + (velocity.x + velocity.y + velocity.z);
-            sum.is_finite() & ((to - from).squared_norm() <= farthest * farthest)
+        let (from, to, velocities) = (self.backup.positions(), &self.state.positions, &self.state.velocities);
+        let work = |block: usize, (): ()| {
+            let nodes = block * NODE_BLOCK..to.len().min((block + 1) * NODE_BLOCK);
+            let (from, to, velocities) = (&from[nodes.clone()], &to[nodes.clone()], &velocities[nodes]);
+            dispatch!(dispatch_level(), _simd => are_within(from, to, velocities, farthest))
         };
-        self.backup
-            .positions()
-            .iter()
-            .zip(ends)
-            .fold(true, |all, (&from, (&to, &velocity))| all & within(from, to, velocity))
+        self.scratch.executor.fold(node_blocks(to.len()), (), &work, &|a, b| a & b).unwrap_or(true)
     }
+}
+
+/// Whether all numbers are finite, and no node went farther than that. Without a branch for each node: one after the other takes four times as long.
+#[inline(always)]
+fn are_within<T: Scalar>(from: &[Vec3<T>], to: &[Vec3<T>], velocities: &[Vec3<T>], farthest: T) -> bool {
+    let mut all = true;
+    for ((&from, &to), &velocity) in from.iter().zip(to).zip(velocities) {
+        let sum = to.x + to.y + to.z + (velocity.x + velocity.y + velocity.z);
+        all &= sum.is_finite() & ((to - from).squared_norm() <= farthest * farthest);
+    }
+    all
 }
 
 /// The cell with the longest edge compared to rest, and the ratio of the lengths.

@@ -77,7 +77,7 @@ impl<T: Scalar, S: Simd, E: Element<T, 1>, M: Measure<T>> Forces<T, S, 1> for &m
     #[inline(always)]
     fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         self.largest = self.largest.max(self.measure.measure(part, slot, &edges[0]));
-        self.element.forces(part, slot, edges)
+        Forces::forces(&mut self.element, part, slot, edges)
     }
 }
 
