@@ -3,7 +3,7 @@
 use super::{Integrator, StepError, World};
 use crate::body::SimulatedBody;
 use crate::dynamics::implicit::ImplicitReport;
-use crate::executor::{Executor, NODE_BLOCK, node_blocks};
+use crate::executor::{Executor, ReadBlocks, node_blocks};
 use crate::instrument::Span;
 use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::stage::{Stage, StageObserver, Stages};
@@ -169,12 +169,9 @@ impl<T: Scalar> SimulatedBody<T> {
     pub(super) fn is_within_bounds(&self) -> bool {
         let farthest = T::from_f64(THROWN * self.size);
         let (from, to, velocities) = (self.backup.positions(), &self.state.positions, &self.state.velocities);
-        let work = |block: usize, (): ()| {
-            let nodes = block * NODE_BLOCK..to.len().min((block + 1) * NODE_BLOCK);
-            let (from, to, velocities) = (&from[nodes.clone()], &to[nodes.clone()], &velocities[nodes]);
-            dispatch!(dispatch_level(), _simd => are_within(from, to, velocities, farthest))
-        };
-        self.scratch.executor.fold(node_blocks(to.len()), (), &work, &|a, b| a & b).unwrap_or(true)
+        let work = |_: usize, (ReadBlocks(from), (ReadBlocks(to), ReadBlocks(velocities)))| dispatch!(dispatch_level(), _simd => are_within(from, to, velocities, farthest));
+        let data = (ReadBlocks(from), (ReadBlocks(to), ReadBlocks(velocities)));
+        self.scratch.executor.fold(node_blocks(to.len()), data, &work, &|a, b| a & b).unwrap_or(true)
     }
 }
 

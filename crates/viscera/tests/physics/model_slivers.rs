@@ -1,4 +1,4 @@
-//! Tetrahedra that are almost flat, turned inside out: what rounding leaves of them may be wrong, but is a number.
+//! Cells that are almost flat, in single precision: right to a few digits, and where turned inside out a number at least.
 
 use viscera::material::{StableNeoHookean, Tissue};
 use viscera::math::Vec3;

@@ -15,7 +15,7 @@
 use super::super::block_table::BlockTable;
 use super::super::kernel_bound::BoundedKernel;
 use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
-use super::orthogonal::{UnitLower, at_corners, columns_at_corners, orthogonal};
+use super::orthogonal::{self, at_corners, columns_at_corners, lower, squares};
 use crate::material::{Fibre, RestStiffness, StVenantKirchhoff};
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
@@ -25,24 +25,12 @@ pub(super) struct StVenantKirchhoffMetric;
 
 impl StVenantKirchhoffMetric {
     pub(super) fn constants(rest: &RestTet, stiffness: &RestStiffness) -> Vec<f64> {
-        let (lower, squares) = orthogonal(rest);
         let lame = stiffness.lame;
         let root = (rest.volume.abs() * lame.mu).sqrt();
-        let Vec3 { x, y, z } = squares * root;
-        vec![lower.yx, lower.zx, lower.zy, x, y, z, root, lame.lambda / (2.0 * lame.mu)]
+        let mut constants = orthogonal::constants(rest, root);
+        constants.extend([root, lame.lambda / (2.0 * lame.mu)]);
+        constants
     }
-}
-
-/// L.
-#[inline(always)]
-fn lower<R: Real>(c: &[R]) -> UnitLower<R> {
-    UnitLower { yx: c[0], zx: c[1], zy: c[2] }
-}
-
-/// qδ.
-#[inline(always)]
-fn squares<R: Real>(c: &[R]) -> Vec3<R> {
-    Vec3::new(c[3], c[4], c[5])
 }
 
 /// t = qδ_i M_ii: q times the diagonal of what is C in the basis of those edges.
@@ -120,15 +108,12 @@ fn off_diagonal<R: Real>(c: &[R], m: Sym3<R>) -> R {
 /// With W = q D A0 = B Δ Lᵀ and S = L [...] Lᵀ, the block of corner i is S_ii I + (2r + 1) w_i w_iᵀ + (L Δ Lᵀ)_ii B Δ Bᵀ.
 #[inline(always)]
 fn isotropic_diagonal<R: Real>(c: &[R], b: &Mat3<R>, stress: Sym3<R>) -> [Sym3<R>; 4] {
-    let (lower, Vec3 { x, y, z }) = (lower(c), squares(c));
-    let [e, f, g] = b.columns;
-    let weighted = Mat3::from_columns(e * x, f * y, g * z);
+    let (lower, one) = (lower(c), c[7].like(1.0));
+    let weighted = orthogonal::weighted(c, b, one);
     let left = (weighted * b.transpose()).symmetric_part();
-    let zero = x.zero_like();
-    let metric = lower.around(Sym3 { xx: x, yy: y, zz: z, xy: zero, xz: zero, yz: zero });
-    let own = columns_at_corners(&lower.transposed_after(&weighted));
-    let (metrics, stresses) = (at_corners(metric), at_corners(lower.around(stress)));
-    let both = c[7].double() + c[7].like(1.0);
+    let own = columns_at_corners(&lower.back_to_edges(&weighted));
+    let (metrics, stresses) = (at_corners(orthogonal::metric(c)), at_corners(lower.around(stress)));
+    let both = c[7].double() + one;
     let mut blocks = [left; 4];
     for corner in 0..4 {
         blocks[corner] = left * metrics[corner] + Sym3::square(own[corner]) * both + Sym3::diagonal(stresses[corner]);
@@ -152,7 +137,7 @@ impl TetKernel for StVenantKirchhoffMetric {
 
     #[inline(always)]
     fn diagonal<R: Real>(constants: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
-        let b = lower(constants).after(d);
+        let b = lower(constants).orthogonal_edges(d);
         isotropic_diagonal(constants, &b, stress(constants, b.gram()))
     }
 
@@ -160,28 +145,28 @@ impl TetKernel for StVenantKirchhoffMetric {
     #[inline(always)]
     fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let (from, to) = (lower.after(from), lower.after(to));
-        lower.transposed_after(&(middle(&from, &to) * stress(constants, mean_metric(&from, &to))))
+        let (from, to) = (lower.orthogonal_edges(from), lower.orthogonal_edges(to));
+        lower.back_to_edges(&(middle(&from, &to) * stress(constants, mean_metric(&from, &to))))
     }
 
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
-        isotropic_energy(constants, lower(constants).after(d).gram())
+        isotropic_energy(constants, lower(constants).orthogonal_edges(d).gram())
     }
 
     #[inline(always)]
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let b = lower.after(d);
-        lower.transposed_after(&(b * stress(constants, b.gram())))
+        let b = lower.orthogonal_edges(d);
+        lower.back_to_edges(&(b * stress(constants, b.gram())))
     }
 
     #[inline(always)]
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let (b, db) = (lower.after(d), lower.after(dd));
+        let (b, db) = (lower.orthogonal_edges(d), lower.orthogonal_edges(dd));
         let along = stress_along(constants, metric_along(&b, &db));
-        lower.transposed_after(&(db * stress(constants, b.gram()) + b * along))
+        lower.back_to_edges(&(db * stress(constants, b.gram()) + b * along))
     }
 }
 
@@ -205,7 +190,7 @@ fn isotropic_bound<R: Real>(c: &[R], m: Sym3<R>, stretch: R) -> R {
 impl BoundedKernel for StVenantKirchhoffMetric {
     #[inline(always)]
     fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let m = lower(c).after(d).gram();
+        let m = lower(c).orthogonal_edges(d).gram();
         isotropic_bound(c, m, stretch_bound(c, m))
     }
 }
@@ -216,9 +201,8 @@ pub(super) struct TransverseMetric;
 
 impl TransverseMetric {
     pub(super) fn constants(rest: &RestTet, stiffness: &RestStiffness) -> Vec<f64> {
-        let (lower, _) = orthogonal(rest);
-        let Vec3 { x, y, z } = lower.solve(rest.inverse * stiffness.direction);
         let mut constants = StVenantKirchhoffMetric::constants(rest, stiffness);
+        let Vec3 { x, y, z } = lower(&constants).solve(rest.inverse * stiffness.direction);
         constants.extend([x, y, z, 2.0 * rest.volume * stiffness.fibre_stiffness / constants[6]]);
         constants
     }
@@ -258,7 +242,7 @@ fn fibre_stress_along<R: Real>(c: &[R], dm: Sym3<R>) -> Sym3<R> {
 impl BoundedKernel for TransverseMetric {
     #[inline(always)]
     fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let m = lower(c).after(d).gram();
+        let m = lower(c).orthogonal_edges(d).gram();
         let stretch = stretch_bound(c, m);
         isotropic_bound(c, m, stretch) + Fibre::bound_of(c[11], stretch, c[6] * fibre_strain(fibre(c), m))
     }
@@ -281,7 +265,7 @@ impl TetKernel for TransverseMetric {
     #[inline(always)]
     fn diagonal<R: Real>(constants: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
         let (lower, beta) = (lower(constants), fibre(constants));
-        let b = lower.after(d);
+        let b = lower.orthogonal_edges(d);
         let m = b.gram();
         let mut blocks = isotropic_diagonal(constants, &b, stress(constants, m));
         let along = Sym3::square(b * beta) + Sym3::diagonal(fibre_strain(beta, m));
@@ -295,13 +279,13 @@ impl TetKernel for TransverseMetric {
     #[inline(always)]
     fn mean_forces<R: Real>(constants: &[R], from: &Mat3<R>, to: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let (from, to) = (lower.after(from), lower.after(to));
-        lower.transposed_after(&(middle(&from, &to) * fibre_stress(constants, mean_metric(&from, &to))))
+        let (from, to) = (lower.orthogonal_edges(from), lower.orthogonal_edges(to));
+        lower.back_to_edges(&(middle(&from, &to) * fibre_stress(constants, mean_metric(&from, &to))))
     }
 
     #[inline(always)]
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R {
-        let m = lower(constants).after(d).gram();
+        let m = lower(constants).orthogonal_edges(d).gram();
         let s = fibre_strain(fibre(constants), m);
         isotropic_energy(constants, m) + (fibre_stiffness(constants) * s.squared()).half()
     }
@@ -309,15 +293,15 @@ impl TetKernel for TransverseMetric {
     #[inline(always)]
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let b = lower.after(d);
-        lower.transposed_after(&(b * fibre_stress(constants, b.gram())))
+        let b = lower.orthogonal_edges(d);
+        lower.back_to_edges(&(b * fibre_stress(constants, b.gram())))
     }
 
     #[inline(always)]
     fn product<R: Real>(constants: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
         let lower = lower(constants);
-        let (b, db) = (lower.after(d), lower.after(dd));
+        let (b, db) = (lower.orthogonal_edges(d), lower.orthogonal_edges(dd));
         let along = fibre_stress_along(constants, metric_along(&b, &db));
-        lower.transposed_after(&(db * fibre_stress(constants, b.gram()) + b * along))
+        lower.back_to_edges(&(db * fibre_stress(constants, b.gram()) + b * along))
     }
 }

@@ -15,8 +15,8 @@
 use super::super::tet_loop::RestTet;
 use crate::math::{Mat3, Real, Sym3, Vec3};
 
-/// L and δ: the gradients of the shape functions 1, 2, 3 are L times vectors that are orthogonal, of squares δ.
-pub(super) fn orthogonal(rest: &RestTet) -> (UnitLower<f64>, Vec3<f64>) {
+/// The constants that kernels along such edges begin with: L (yx, zx, zy), then `scale` times δ (x, y, z).
+pub(super) fn constants(rest: &RestTet, scale: f64) -> Vec<f64> {
     let [_, x, y, z] = rest.gradients();
     let along = |v: Vec3<f64>, axis: Vec3<f64>| v.dot(axis) / axis.squared_norm();
     let yx = along(y, x);
@@ -25,28 +25,54 @@ pub(super) fn orthogonal(rest: &RestTet) -> (UnitLower<f64>, Vec3<f64>) {
     let z = z - x * zx;
     let zy = along(z, y);
     let z = z - y * zy;
-    (UnitLower { yx, zx, zy }, Vec3::new(x.squared_norm(), y.squared_norm(), z.squared_norm()))
+    vec![yx, zx, zy, scale * x.squared_norm(), scale * y.squared_norm(), scale * z.squared_norm()]
+}
+
+/// L.
+#[inline(always)]
+pub(super) fn lower<R: Real>(c: &[R]) -> UnitLower<R> {
+    UnitLower { yx: c[0], zx: c[1], zy: c[2] }
+}
+
+/// δ, scaled as it is.
+#[inline(always)]
+pub(super) fn squares<R: Real>(c: &[R]) -> Vec3<R> {
+    Vec3::new(c[3], c[4], c[5])
+}
+
+/// L Δ Lᵀ.
+#[inline(always)]
+pub(super) fn metric<R: Real>(c: &[R]) -> Sym3<R> {
+    let (Vec3 { x, y, z }, zero) = (squares(c), c[3].zero_like());
+    lower(c).around(Sym3 { xx: x, yy: y, zz: z, xy: zero, xz: zero, yz: zero })
+}
+
+/// B Δ `factor`.
+#[inline(always)]
+pub(super) fn weighted<R: Real>(c: &[R], b: &Mat3<R>, factor: R) -> Mat3<R> {
+    let [x, y, z] = b.columns;
+    Mat3::from_columns(x * (c[3] * factor), y * (c[4] * factor), z * (c[5] * factor))
 }
 
 /// A matrix with 1 on the diagonal and nothing above it.
 #[derive(Clone, Copy)]
 pub(super) struct UnitLower<R> {
-    pub(super) yx: R,
-    pub(super) zx: R,
-    pub(super) zy: R,
+    yx: R,
+    zx: R,
+    zy: R,
 }
 
 impl<R: Real> UnitLower<R> {
-    /// A L.
+    /// B = D L of the edges D.
     #[inline(always)]
-    pub(super) fn after(self, a: &Mat3<R>) -> Mat3<R> {
-        let [x, y, z] = a.columns;
+    pub(super) fn orthogonal_edges(self, d: &Mat3<R>) -> Mat3<R> {
+        let [x, y, z] = d.columns;
         Mat3::from_columns(z.mul_add(self.zx, y.mul_add(self.yx, x)), z.mul_add(self.zy, y), z)
     }
 
-    /// A Lᵀ.
+    /// A Lᵀ: what acts on the edges themselves, of what acts on the combined ones.
     #[inline(always)]
-    pub(super) fn transposed_after(self, a: &Mat3<R>) -> Mat3<R> {
+    pub(super) fn back_to_edges(self, a: &Mat3<R>) -> Mat3<R> {
         let [x, y, z] = a.columns;
         Mat3::from_columns(x, x.mul_add(self.yx, y), y.mul_add(self.zy, x.mul_add(self.zx, z)))
     }
@@ -54,8 +80,8 @@ impl<R: Real> UnitLower<R> {
     /// L A Lᵀ.
     #[inline(always)]
     pub(super) fn around(self, a: Sym3<R>) -> Sym3<R> {
-        let left = self.transposed_after(&Mat3::from(a)).transpose();
-        self.transposed_after(&left).symmetric_part()
+        let left = self.back_to_edges(&Mat3::from(a)).transpose();
+        self.back_to_edges(&left).symmetric_part()
     }
 
     /// L⁻¹ v.

@@ -10,9 +10,9 @@
 use super::super::block_table::BlockTable;
 use super::super::kernel_bound::BoundedKernel;
 use super::super::tet_loop::{RestTet, TetConstants, TetKernel};
-use super::orthogonal::{UnitLower, at_corners, columns_at_corners, orthogonal};
+use super::orthogonal::{self, at_corners, columns_at_corners, lower, weighted};
 use crate::material::{LawFamily, StableNeoHookean};
-use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
+use crate::math::{Mat3, Real, Scalar, Sym3};
 
 /// Constants: L (yx, zx, zy), δ (x, y, z), 1/det Dm, Vλ', Vμ'.
 #[derive(Clone, Debug)]
@@ -20,17 +20,12 @@ pub(super) struct StableNeoHookeanMetric;
 
 impl StableNeoHookeanMetric {
     pub(super) fn constants(rest: &RestTet, law: &[f64]) -> Vec<f64> {
-        let (UnitLower { yx, zx, zy }, Vec3 { x, y, z }) = orthogonal(rest);
         let (lambda, mu) = StableNeoHookean::from_values(law).rescaled();
         let inverse_determinant = 1.0 / (6.0 * rest.volume);
-        vec![yx, zx, zy, x, y, z, inverse_determinant, rest.volume * lambda, rest.volume * mu]
+        let mut constants = orthogonal::constants(rest, 1.0);
+        constants.extend([inverse_determinant, rest.volume * lambda, rest.volume * mu]);
+        constants
     }
-}
-
-/// L.
-#[inline(always)]
-fn lower<R: Real>(c: &[R]) -> UnitLower<R> {
-    UnitLower { yx: c[0], zx: c[1], zy: c[2] }
 }
 
 /// I_C = Σ δ_i |b_i|².
@@ -38,13 +33,6 @@ fn lower<R: Real>(c: &[R]) -> UnitLower<R> {
 fn first_invariant<R: Real>(c: &[R], b: &Mat3<R>) -> R {
     let [x, y, z] = b.columns;
     c[3].mul_add(x.dot(x), c[4].mul_add(y.dot(y), c[5] * z.dot(z)))
-}
-
-/// B Δ `factor`.
-#[inline(always)]
-fn stretched<R: Real>(c: &[R], b: &Mat3<R>, factor: R) -> Mat3<R> {
-    let [x, y, z] = b.columns;
-    Mat3::from_columns(x * (c[3] * factor), y * (c[4] * factor), z * (c[5] * factor))
 }
 
 /// V [λ' (J − 1) − ¾μ'] / det Dm.
@@ -64,7 +52,7 @@ fn over_squared_determinant<R: Real>(c: &[R]) -> R {
 impl BoundedKernel for StableNeoHookeanMetric {
     #[inline(always)]
     fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let b = lower(c).after(d);
+        let b = lower(c).orthogonal_edges(d);
         let cofactor = b.cofactor();
         let [x, y, z] = cofactor.columns;
         let area = (c[4] * c[5]) * x.dot(x) + (c[3] * c[5]) * y.dot(y) + (c[3] * c[4]) * z.dot(z);
@@ -88,12 +76,12 @@ impl TetKernel for StableNeoHookeanMetric {
     // The area vector cof D_i of a face does not change with the corner opposite to it: the pressure adds nothing.
     #[inline(always)]
     fn diagonal<R: Real>(c: &[R], d: &Mat3<R>) -> [Sym3<R>; 4] {
-        let (lower, one, zero) = (lower(c), c[0].like(1.0), c[0].zero_like());
-        let b = lower.after(d);
+        let (lower, one) = (lower(c), c[0].like(1.0));
+        let b = lower.orthogonal_edges(d);
         let share = one / (first_invariant(c, &b) + one);
-        let own = columns_at_corners(&lower.transposed_after(&stretched(c, &b, one)));
-        let areas = columns_at_corners(&lower.transposed_after(&b.cofactor()));
-        let metric = lower.around(Sym3 { xx: c[3], yy: c[4], zz: c[5], xy: zero, xz: zero, yz: zero });
+        let own = columns_at_corners(&lower.back_to_edges(&weighted(c, &b, one)));
+        let areas = columns_at_corners(&lower.back_to_edges(&b.cofactor()));
+        let metric = orthogonal::metric(c);
         let (metrics, volume) = (at_corners(metric), over_squared_determinant(c));
         let mut blocks = [metric; 4];
         for corner in 0..4 {
@@ -106,7 +94,7 @@ impl TetKernel for StableNeoHookeanMetric {
 
     #[inline(always)]
     fn energy<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let (b, one) = (lower(c).after(d), c[0].like(1.0));
+        let (b, one) = (lower(c).orthogonal_edges(d), c[0].like(1.0));
         let excess = first_invariant(c, &b) - one.like(3.0);
         let change = b.determinant().mul_add(c[6], one.like(-1.0));
         let logarithm = excess.mul_add(one.like(0.25), one).ln();
@@ -117,27 +105,27 @@ impl TetKernel for StableNeoHookeanMetric {
     #[inline(always)]
     fn forces<R: Real>(c: &[R], d: &Mat3<R>) -> Mat3<R> {
         let (lower, one) = (lower(c), c[0].like(1.0));
-        let b = lower.after(d);
+        let b = lower.orthogonal_edges(d);
         let cofactor = b.cofactor();
         let shape = c[8] * (one - one / (first_invariant(c, &b) + one));
         let pressure = pressure(c, b.columns[0].dot(cofactor.columns[0]));
-        lower.transposed_after(&cofactor.mul_add(pressure, stretched(c, &b, shape)))
+        lower.back_to_edges(&cofactor.mul_add(pressure, weighted(c, &b, shape)))
     }
 
     // dI_C = 2 Σ δ_i b_i·db_i
     #[inline(always)]
     fn product<R: Real>(c: &[R], d: &Mat3<R>, dd: &Mat3<R>) -> Mat3<R> {
         let (lower, one) = (lower(c), c[0].like(1.0));
-        let (b, db) = (lower.after(d), lower.after(dd));
+        let (b, db) = (lower.orthogonal_edges(d), lower.orthogonal_edges(dd));
         let cofactor = b.cofactor();
         let share = one / (first_invariant(c, &b) + one);
-        let direction = stretched(c, &b, one);
+        let direction = weighted(c, &b, one);
         let d_shape = (c[8] * share.squared() * direction.contract(db)).double();
         let d_pressure = over_squared_determinant(c) * cofactor.contract(db);
-        let forces = stretched(c, &db, c[8] * (one - share))
+        let forces = weighted(c, &db, c[8] * (one - share))
             + direction * d_shape
             + cofactor * d_pressure
             + b.cofactor_along(db) * pressure(c, b.columns[0].dot(cofactor.columns[0]));
-        lower.transposed_after(&forces)
+        lower.back_to_edges(&forces)
     }
 }
