@@ -224,8 +224,7 @@ fn sum_kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, pace: Pace<T>, sta
                 patches.write_up_block(block, scratch.summed(), internal);
             }
             let accelerations = (&external_forces[nodes.clone()], &*internal, &masses[nodes]);
-            kick_freely(v.0, accelerations, pace);
-            kick_and_drift_freely(x.0, v.0, accelerations, pace);
+            kick_twice_and_drift_freely(x.0, v.0, accelerations, pace);
         });
     };
     let data = ((NodeBlocks(positions), NodeBlocks(velocities)), NodeBlocks(internal_forces));
@@ -272,6 +271,20 @@ impl<T: Scalar> Pace<T> {
         let half = T::from_f64(0.5 * dt);
         Self { step: T::from_f64(dt), half, damping, damped: T::ONE / (T::ONE + half * damping) }
     }
+
+    /// The first kick of a sub-step by a force R − F, and the drift.
+    #[inline(always)]
+    fn kick_and_drift(self, x: &mut Vec3<T>, v: &mut Vec3<T>, force: Vec3<T>, mass: T) {
+        let acceleration = force * (T::ONE / mass) - *v * self.damping;
+        *v = acceleration.mul_add(self.half, *v);
+        *x = v.mul_add(self.step, *x);
+    }
+
+    /// The second kick.
+    #[inline(always)]
+    fn kick(self, v: &mut Vec3<T>, force: Vec3<T>, mass: T) {
+        *v = force.mul_add(self.half / mass, *v) * self.damped;
+    }
 }
 
 /// External forces, internal forces and masses of a block of nodes: what (R − F)/m comes from.
@@ -300,22 +313,30 @@ fn kick_and_drift_freely<T: Scalar>(
     x: &mut [Vec3<T>],
     v: &mut [Vec3<T>],
     (external, internal, masses): Accelerations<'_, T>,
-    Pace { step, half, damping, .. }: Pace<T>,
+    pace: Pace<T>,
 ) {
     for ((((x, v), &external), &internal), &mass) in x.iter_mut().zip(v).zip(external).zip(internal).zip(masses) {
-        let acceleration = (external - internal) * (T::ONE / mass) - *v * damping;
-        *v = acceleration.mul_add(half, *v);
-        *x = v.mul_add(step, *x);
+        pace.kick_and_drift(x, v, external - internal, mass);
     }
 }
 
 #[inline(always)]
-fn kick_freely<T: Scalar>(
+fn kick_freely<T: Scalar>(v: &mut [Vec3<T>], (external, internal, masses): Accelerations<'_, T>, pace: Pace<T>) {
+    for (((v, &external), &internal), &mass) in v.iter_mut().zip(external).zip(internal).zip(masses) {
+        pace.kick(v, external - internal, mass);
+    }
+}
+
+/// Both in one way through the nodes.
+#[inline(always)]
+fn kick_twice_and_drift_freely<T: Scalar>(
+    x: &mut [Vec3<T>],
     v: &mut [Vec3<T>],
     (external, internal, masses): Accelerations<'_, T>,
-    Pace { half, damped, .. }: Pace<T>,
+    pace: Pace<T>,
 ) {
-    for (((v, &external), &internal), &mass) in v.iter_mut().zip(external).zip(internal).zip(masses) {
-        *v = (external - internal).mul_add(half / mass, *v) * damped;
+    for ((((x, v), &external), &internal), &mass) in x.iter_mut().zip(v).zip(external).zip(internal).zip(masses) {
+        pace.kick(v, external - internal, mass);
+        pace.kick_and_drift(x, v, external - internal, mass);
     }
 }

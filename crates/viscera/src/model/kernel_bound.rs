@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 
 use super::block_table::BlockTable;
 use super::frequency::{FrequencyBound, squared_frequency_of_tet};
-use super::patch::Measure;
+use super::patch::{ForcesAndInvariants, Measured};
 use super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop, TetMeasure};
 use super::{ModelError, Patches, Scratch};
 use crate::material::LawFamily;
@@ -15,8 +15,10 @@ use crate::mesh::TetMesh;
 
 /// A kernel that knows how stiff its law is.
 pub(super) trait BoundedKernel: TetKernel {
-    /// V times the law's [`stiffness_bound`](crate::material::Law::stiffness_bound) [J].
-    fn stiffness_bound<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
+    /// Numbers of a deformed tetrahedron that tell how stiff it is; zeros where the kernel needs fewer.
+    fn invariants<R: Real>(constants: &[R], d: &Mat3<R>) -> [R; 3];
+    /// V times the law's [`stiffness_bound`](crate::material::Law::stiffness_bound) [J], as a function of those.
+    fn stiffness_bound<R: Real>(constants: &[R], invariants: &[R; 3]) -> R;
 }
 
 /// Constants: those of the kernel, then ω² at rest over the kernel's bound at rest.
@@ -40,7 +42,8 @@ impl<K: BoundedKernel> TetConstants for KernelBound<K> {
 impl<K: BoundedKernel> TetMeasure for KernelBound<K> {
     #[inline(always)]
     fn measure<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        c[K::CONSTANTS] * K::stiffness_bound(&c[..K::CONSTANTS], d)
+        let own = &c[..K::CONSTANTS];
+        c[K::CONSTANTS] * K::stiffness_bound(own, &K::invariants(own, d))
     }
 }
 
@@ -54,7 +57,8 @@ pub(super) fn kernel_bound<T: Scalar, K: BoundedKernel, L: LawFamily>(
         let (law, mut constants) = of_cell(rest);
         let corner_mass = density(rest.cell) * rest.volume / 4.0;
         let at_rest = squared_frequency_of_tet(&law, rest, corner_mass);
-        constants.push(at_rest / K::stiffness_bound(&constants, &rest.inverse.inverse()));
+        let invariants = K::invariants(&constants, &rest.inverse.inverse());
+        constants.push(at_rest / K::stiffness_bound(&constants, &invariants));
         constants
     })?;
     Ok(Box::new(bound))
@@ -79,17 +83,35 @@ impl<T: Scalar, K: BoundedKernel> FrequencyBound<T> for TetLoop<T, KernelBound<K
     }
 }
 
-/// The bound by the constants that the forces have loaded.
+/// Forces, and the bound by their constants.
 struct Along<'a, T: Scalar, K> {
     tets: &'a TetLoop<T, K>,
     bound: &'a TetLoop<T, KernelBound<K>>,
 }
 
-impl<T: Scalar, K: BoundedKernel> Measure<T> for Along<'_, T, K> {
+impl<T: Scalar, K: BoundedKernel> Measured<T> for Along<'_, T, K> {
     #[inline(always)]
-    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> T::Lanes<S> {
+    fn prefetch(&self, slot: usize) {
+        self.tets.prefetch(slot);
+    }
+
+    // Of constants that are loaded once, so that the compiler finds what both have in common.
+    #[inline(always)]
+    fn forces_and_invariants<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &Mat3<T::Lanes<S>>,
+    ) -> ForcesAndInvariants<T::Lanes<S>> {
         let constants = self.tets.load(part, slot);
-        self.bound.column(part, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], edges)
+        let constants = &constants[..K::CONSTANTS];
+        (K::forces(constants, edges), K::invariants(constants, edges))
+    }
+
+    #[inline(always)]
+    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, invariants: &[T::Lanes<S>; 3]) -> T::Lanes<S> {
+        let constants = self.tets.load(part, slot);
+        self.bound.column(part, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], invariants)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::lane_vector;
-use super::patch::{Diagonal, Element, Measure, Patches, TetFans};
+use super::patch::{Diagonal, Element, Measure, Measured, Patches, TetFans};
 use super::{BlockSink, ModelError, Scratch};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
@@ -170,6 +170,12 @@ impl<T: Scalar, K: TetConstants> TetLoop<T, K> {
         constants
     }
 
+    /// Asks for those of a slot that a loop will come to, if there is one.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, slot: usize) {
+        self.constants.prefetch(T::LANES, K::CONSTANTS, slot);
+    }
+
     /// One of them.
     #[inline(always)]
     pub(super) fn column<S: Simd>(&self, part: Part<S>, slot: usize, column: usize) -> T::Lanes<S> {
@@ -218,7 +224,7 @@ struct Mean<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
-        self.0.constants.prefetch(T::LANES, K::CONSTANTS, slot);
+        self.0.prefetch(slot);
     }
 
     #[inline(always)]
@@ -265,11 +271,10 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
     pub(super) fn sum_forces_and_measure(
         &self,
         x: &[Vec3<T>],
-        measure: &impl Measure<T>,
+        element: &impl Measured<T>,
         scratch: &mut Scratch<T>,
     ) -> (&Patches, f64) {
-        let sums = scratch.sums(self.sum_rows()).0;
-        let (patches, largest) = self.order.sum_and_find_largest(x, &Forces(self), measure, sums);
+        let (patches, largest) = self.order.sum_and_find_largest(x, element, scratch.sums(self.sum_rows()).0);
         (patches, largest.to_f64())
     }
 

@@ -52,6 +52,27 @@ pub(crate) struct Deformed<R> {
     pub(crate) r: Mat3<R>,
 }
 
+/// Forces on the corners 1, 2, 3 of tetrahedra, and three numbers of each.
+pub(crate) type ForcesAndInvariants<R> = (Mat3<R>, [R; 3]);
+
+/// Forces of tetrahedra, and a number of each that comes from three others which are found on the way of the forces.
+///
+/// It is asked for the number of all tetrahedra of a batch after their forces: with a root at the end of a chain of thirty operations, processors do
+/// not look far enough ahead to do anything else meanwhile.
+pub(crate) trait Measured<T: Scalar>: Sync {
+    /// As [`Element::prefetch`].
+    fn prefetch(&self, slot: usize);
+    /// Those of the tetrahedra of a slot.
+    fn forces_and_invariants<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &Mat3<T::Lanes<S>>,
+    ) -> ForcesAndInvariants<T::Lanes<S>>;
+    /// The number that comes from the three.
+    fn measure<S: Simd>(&self, part: Part<S>, slot: usize, invariants: &[T::Lanes<S>; 3]) -> T::Lanes<S>;
+}
+
 /// A number of tetrahedra, as a function of their edges.
 pub(crate) trait Measure<T: Scalar>: Sync {
     /// The number of each tetrahedron of a slot.

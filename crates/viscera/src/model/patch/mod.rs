@@ -13,7 +13,7 @@ mod fan;
 mod tet_fans;
 mod visitor;
 
-pub(crate) use element::{Deformed, Diagonal, Element, Measure, Record};
+pub(crate) use element::{Deformed, Diagonal, Element, ForcesAndInvariants, Measure, Measured, Record};
 pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;

@@ -1,8 +1,8 @@
 use super::batch::Batch;
 use super::deal::{deal, halves_share_no_node};
-use super::element::{Deformed, Diagonal, Element, Measure, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record};
 use super::fan::{Fan, LONGEST, fans};
-use super::visitor::{BatchNodes, Forces, Keep, Largest, Measuring, Scatter, ScatterBlocks, Visitor, starts};
+use super::visitor::{BatchNodes, Keep, Largest, Scatter, ScatterAndMeasure, ScatterBlocks, Visitor, starts};
 use super::{PatchRows, Patches, PerPatch, clear, no_rows};
 use crate::executor::Executor;
 use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
@@ -174,12 +174,11 @@ impl TetFans {
         &self.patches
     }
 
-    /// The same, and the largest of what `measure` says of each tetrahedron, 0 if there is none above.
+    /// The same, and the largest number that `element` measures, 0 if there is none above.
     pub(crate) fn sum_and_find_largest<T: Scalar>(
         &self,
         x: &[Vec3<T>],
-        element: &impl Element<T, 1>,
-        measure: &impl Measure<T>,
+        element: &impl Measured<T>,
         Sums { executor, rows }: Sums<'_, T>,
     ) -> (&Patches, T) {
         let data = self.patches.per_patch(&mut rows[..self.patches.rows()], 1);
@@ -188,7 +187,7 @@ impl TetFans {
             let mut places = no_rows::<T, 1>();
             clear(&mut sums[..self.patches.nodes(patch).len()]);
             self.patches.gather(patch, &[x], &mut places);
-            dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], (element, measure), sums))
+            dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], element, sums))
         };
         let largest = executor.fold(self.patches.count(), data, &work, &Real::max);
         (&self.patches, largest.unwrap_or(T::ZERO))
@@ -200,12 +199,14 @@ impl TetFans {
         simd: S,
         patch: usize,
         places: &PatchRows<T>,
-        (element, measure): (&impl Element<T, 1>, &impl Measure<T>),
+        element: &impl Measured<T>,
         sums: &mut PatchRows<T>,
     ) -> T {
-        let mut measuring = Measuring { element, measure, largest: T::Lanes::<S>::splat(simd, T::ZERO) };
-        self.scatter_with(simd, patch, [places], &mut measuring, sums);
-        largest_lane(simd, measuring.largest)
+        let zero = T::Lanes::<S>::splat(simd, T::ZERO);
+        let (invariants, forces) = ([[zero; 3]; LONGEST], [[nothing(); 3]; LONGEST]);
+        let mut scatter = ScatterAndMeasure { element, sums, batch: (0, 0), invariants, forces, largest: zero };
+        self.walk(simd, patch, [places], &mut scatter);
+        largest_lane(simd, scatter.largest)
     }
 
     /// The same for a product at `x`, along the direction that `turn` is on its way to, with masses; gives the curvature along it as well.
@@ -263,7 +264,7 @@ impl TetFans {
         simd: S,
         patch: usize,
         fields: [&PatchRows<T>; FIELDS],
-        element: impl Forces<T, S, FIELDS>,
+        element: &impl Element<T, FIELDS>,
         sums: &mut PatchRows<T>,
     ) {
         let mut scatter = Scatter { element, sums, forces: [[nothing(); 3]; LONGEST] };

@@ -1,6 +1,6 @@
 //! What loops do along the fans of a patch: add up forces or blocks, keep numbers, look for the largest.
 
-use super::element::{Deformed, Diagonal, Element, Measure, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
@@ -50,53 +50,60 @@ impl BatchNodes<'_> {
 /// How many slots a loop looks ahead: with four, a million tetrahedra take a sixth longer.
 const AHEAD: usize = 12;
 
-/// Who knows the forces of the tetrahedra of a slot.
-pub(super) trait Forces<T: Scalar, S: Simd, const FIELDS: usize> {
-    /// Those on the corners 1, 2, 3.
-    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
-}
-
-impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Forces<T, S, FIELDS> for &E {
-    #[inline(always)]
-    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>> {
-        if part.is_first() {
-            self.prefetch(slot + AHEAD);
-        }
-        (**self).forces(part, slot, edges)
-    }
-}
-
-/// Forces of an element, and the largest of what is measured of it.
-pub(super) struct Measuring<'a, E, M, V> {
-    pub(super) element: &'a E,
-    pub(super) measure: &'a M,
-    pub(super) largest: V,
-}
-
-impl<T: Scalar, S: Simd, E: Element<T, 1>, M: Measure<T>> Forces<T, S, 1> for &mut Measuring<'_, E, M, T::Lanes<S>> {
-    #[inline(always)]
-    fn forces(&mut self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        self.largest = self.largest.max(self.measure.measure(part, slot, &edges[0]));
-        Forces::forces(&mut self.element, part, slot, edges)
-    }
-}
-
 /// Adds up forces: those on the axis over the whole fan, those on a node of the ring over the two cells that share it.
-pub(super) struct Scatter<'a, T: Scalar, F> {
-    pub(super) element: F,
+pub(super) struct Scatter<'a, T: Scalar, E> {
+    pub(super) element: &'a E,
     pub(super) sums: &'a mut PatchRows<T>,
     /// The forces of a batch.
     pub(super) forces: KeptVectors<T, 3>,
 }
 
-impl<T: Scalar, S: Simd, F: Forces<T, S, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, F> {
+impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, E> {
     #[inline(always)]
     fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
+        if part.is_first() {
+            self.element.prefetch(slot + AHEAD);
+        }
         keep::<T, S>(part.simd, self.element.forces(part, slot, edges), &mut self.forces[place]);
     }
 
     #[inline(always)]
     fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
+        add_up_batch(&self.forces, part, nodes, self.sums);
+    }
+}
+
+/// The same, and looks for the largest of what is measured on the way.
+pub(super) struct ScatterAndMeasure<'a, T: Scalar, S: Simd, E> {
+    pub(super) element: &'a E,
+    pub(super) sums: &'a mut PatchRows<T>,
+    /// The tetrahedra of a batch: its first slot, and how many there are.
+    pub(super) batch: (usize, usize),
+    pub(super) invariants: [[T::Lanes<S>; 3]; LONGEST],
+    pub(super) forces: KeptVectors<T, 3>,
+    pub(super) largest: T::Lanes<S>,
+}
+
+impl<T: Scalar, S: Simd, E: Measured<T>> Visitor<T, S, 1> for ScatterAndMeasure<'_, T, S, E> {
+    #[inline(always)]
+    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+        if part.is_first() {
+            self.element.prefetch(slot + AHEAD);
+        }
+        self.batch = (slot - place, place + 1);
+        let (forces, invariants) = self.element.forces_and_invariants(part, slot, &edges[0]);
+        self.invariants[place] = invariants;
+        keep::<T, S>(part.simd, forces, &mut self.forces[place]);
+    }
+
+    #[inline(always)]
+    fn end(&mut self, part: Part<S>, nodes: &BatchNodes<'_>) {
+        let (slot, length) = self.batch;
+        let mut largest = self.largest;
+        for (number, invariants) in self.invariants[..length].iter().enumerate() {
+            largest = largest.max(self.element.measure(part, slot + number, invariants));
+        }
+        self.largest = largest;
         add_up_batch(&self.forces, part, nodes, self.sums);
     }
 }

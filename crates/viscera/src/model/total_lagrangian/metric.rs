@@ -39,17 +39,17 @@ fn stretches<R: Real>(c: &[R], m: Sym3<R>) -> Vec3<R> {
     Vec3::new(c[3] * m.xx, c[4] * m.yy, c[5] * m.zz)
 }
 
-/// t_1 + t_2 + t_3 − 3q = 2q tr E.
+/// t_1 + t_2 + t_3 − 3q = 2q tr E, of the `sum` of the t.
 #[inline(always)]
-fn twice_trace<R: Real>(c: &[R], t: Vec3<R>) -> R {
-    c[6].mul_add(c[6].like(-3.0), t.x + t.y + t.z)
+fn twice_trace<R: Real>(c: &[R], sum: R) -> R {
+    c[6].mul_add(c[6].like(-3.0), sum)
 }
 
 /// What is in brackets for M = `m`.
 #[inline(always)]
 fn stress<R: Real>(c: &[R], m: Sym3<R>) -> Sym3<R> {
     let t = stretches(c, m);
-    weighted(c, m, t, c[7].mul_add(twice_trace(c, t), -c[6]))
+    weighted(c, m, t, c[7].mul_add(twice_trace(c, t.x + t.y + t.z), -c[6]))
 }
 
 /// Its derivative along dM.
@@ -95,7 +95,8 @@ fn isotropic_energy<R: Real>(c: &[R], m: Sym3<R>) -> R {
     let t = stretches(c, m);
     let (x, y, z) = (t.x - c[6], t.y - c[6], t.z - c[6]);
     let shear = off_diagonal(c, m);
-    (c[7] * twice_trace(c, t).squared() + (x.squared() + y.squared() + z.squared()) + shear.double()) * x.like(0.25)
+    (c[7] * twice_trace(c, t.x + t.y + t.z).squared() + (x.squared() + y.squared() + z.squared()) + shear.double())
+        * x.like(0.25)
 }
 
 /// q² (C_xy² + C_xz² + C_yz²) in the basis of those edges.
@@ -170,28 +171,39 @@ impl TetKernel for StVenantKirchhoffMetric {
     }
 }
 
-/// Upper bound of q times the largest eigenvalue of C, which has those of Δ M: mean + √(⅔) ‖deviator‖.
+/// q tr C and q² times the square of the deviator of C, whose eigenvalues are those of Δ M.
 #[inline(always)]
-fn stretch_bound<R: Real>(c: &[R], m: Sym3<R>) -> R {
+fn isotropic_invariants<R: Real>(c: &[R], m: Sym3<R>) -> [R; 2] {
     let t = stretches(c, m);
-    let mean = (t.x + t.y + t.z) * t.x.like(1.0 / 3.0);
+    let sum = t.x + t.y + t.z;
+    let mean = sum * sum.like(1.0 / 3.0);
     let deviator = Vec3::new(t.x - mean, t.y - mean, t.z - mean);
-    let square = deviator.squared_norm() + off_diagonal(c, m).double();
-    mean + (square * mean.like(2.0 / 3.0)).sqrt()
+    [sum, deviator.squared_norm() + off_diagonal(c, m).double()]
+}
+
+/// Upper bound of q times the largest eigenvalue of C: mean + √(⅔) ‖deviator‖.
+#[inline(always)]
+fn stretch_bound<R: Real>([sum, deviator, _]: &[R; 3]) -> R {
+    *sum * sum.like(1.0 / 3.0) + (*deviator * sum.like(2.0 / 3.0)).sqrt()
 }
 
 /// V times the bound of the law, which is that of qλ/μ and q of q times the stretch.
 #[inline(always)]
-fn isotropic_bound<R: Real>(c: &[R], m: Sym3<R>, stretch: R) -> R {
+fn isotropic_bound<R: Real>(c: &[R], sum: R, stretch: R) -> R {
     let law = StVenantKirchhoff { lambda: c[6] * c[7].double(), mu: c[6] };
-    law.bound_of(stretch, twice_trace(c, stretches(c, m)).half(), c[6])
+    law.bound_of(stretch, twice_trace(c, sum).half(), c[6])
 }
 
 impl BoundedKernel for StVenantKirchhoffMetric {
     #[inline(always)]
-    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let m = lower(c).orthogonal_edges(d).gram();
-        isotropic_bound(c, m, stretch_bound(c, m))
+    fn invariants<R: Real>(c: &[R], d: &Mat3<R>) -> [R; 3] {
+        let [sum, deviator] = isotropic_invariants(c, lower(c).orthogonal_edges(d).gram());
+        [sum, deviator, sum.zero_like()]
+    }
+
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], invariants: &[R; 3]) -> R {
+        isotropic_bound(c, invariants[0], stretch_bound(invariants))
     }
 }
 
@@ -241,10 +253,16 @@ fn fibre_stress_along<R: Real>(c: &[R], dm: Sym3<R>) -> Sym3<R> {
 
 impl BoundedKernel for TransverseMetric {
     #[inline(always)]
-    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
+    fn invariants<R: Real>(c: &[R], d: &Mat3<R>) -> [R; 3] {
         let m = lower(c).orthogonal_edges(d).gram();
-        let stretch = stretch_bound(c, m);
-        isotropic_bound(c, m, stretch) + Fibre::bound_of(c[11], stretch, c[6] * fibre_strain(fibre(c), m))
+        let [sum, deviator] = isotropic_invariants(c, m);
+        [sum, deviator, fibre_strain(fibre(c), m)]
+    }
+
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], invariants: &[R; 3]) -> R {
+        let stretch = stretch_bound(invariants);
+        isotropic_bound(c, invariants[0], stretch) + Fibre::bound_of(c[11], stretch, c[6] * invariants[2])
     }
 }
 

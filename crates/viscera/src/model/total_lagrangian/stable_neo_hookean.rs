@@ -51,13 +51,16 @@ fn over_squared_determinant<R: Real>(c: &[R]) -> R {
 // ‖cof F‖² = Σ δ_j δ_k |b_j × b_k|².
 impl BoundedKernel for StableNeoHookeanMetric {
     #[inline(always)]
-    fn stiffness_bound<R: Real>(c: &[R], d: &Mat3<R>) -> R {
+    fn invariants<R: Real>(c: &[R], d: &Mat3<R>) -> [R; 3] {
         let b = lower(c).orthogonal_edges(d);
-        let cofactor = b.cofactor();
-        let [x, y, z] = cofactor.columns;
+        let [x, y, z] = b.cofactor().columns;
         let area = (c[4] * c[5]) * x.dot(x) + (c[3] * c[5]) * y.dot(y) + (c[3] * c[4]) * z.dot(z);
-        let determinant = b.columns[0].dot(x) * c[6];
-        StableNeoHookean::<R>::bound_of((c[7], c[8]), first_invariant(c, &b), area, determinant)
+        [first_invariant(c, &b), area, b.columns[0].dot(x) * c[6]]
+    }
+
+    #[inline(always)]
+    fn stiffness_bound<R: Real>(c: &[R], &[square, area, determinant]: &[R; 3]) -> R {
+        StableNeoHookean::<R>::bound_of((c[7], c[8]), square, area, determinant)
     }
 }
 
