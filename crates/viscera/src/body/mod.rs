@@ -43,7 +43,7 @@ pub use removals::Removals;
 pub use simulated::SimulatedBody;
 pub(crate) use simulated::free_directions;
 pub use state::{BodyState, NodeMotion, PastState};
-pub(crate) use state::{Driven, MotionBackup};
+pub(crate) use state::{Driven, MotionBackup, Still};
 pub(crate) use static_answer::StaticAnswer;
 pub use static_report::{LoadStep, StaticReport};
 

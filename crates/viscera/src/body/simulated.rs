@@ -3,7 +3,7 @@ use super::skin::Skin;
 use super::supports::{filters, motions};
 use super::{
     Actuators, Body, BodyError, BodyState, Driven, Drivers, Followers, Guides, LoadError, LoosePieces, ModelPlan,
-    Models, MotionBackup, Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer, StaticReport,
+    Models, MotionBackup, Muscles, NodalLoads, NodeMotion, PastState, Removals, StaticAnswer, StaticReport, Still,
 };
 use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
@@ -57,6 +57,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) is_linearized: bool,
     /// Memory of explicit steps for the nodes that are not free.
     pub(crate) driven: Vec<Driven<T>>,
+    pub(crate) still: Vec<Still<T>>,
     /// Whether nothing meets it between the sub-steps of an explicit step.
     pub(crate) is_left_alone: bool,
     pub(crate) backup: MotionBackup<T>,
@@ -172,6 +173,7 @@ impl<T: Scalar> SimulatedBody<T> {
             scratch: Scratch::for_models(mesh.nodes().len(), &state.models),
             is_linearized: false,
             driven: Vec::with_capacity(mesh.nodes().len()),
+            still: Vec::with_capacity(mesh.nodes().len()),
             is_left_alone: false,
             backup: MotionBackup::new(&state),
             pieces: vec![0; 2 * mesh.nodes().len()],

@@ -84,9 +84,9 @@ impl Executor {
         team.lead(|| {
             Some(match team.members() {
                 _ if !team.is_at_hand() => fold(0, parts, data, work, merge),
-                2 => fold_among::<D, R, 4>(team, parts, data, work, merge),
-                3..=8 => fold_among::<D, R, 16>(team, parts, data, work, merge),
-                _ => fold_among::<D, R, 64>(team, parts, data, work, merge),
+                2 => fold_among::<D, R, 2>(team, parts, data, work, merge),
+                3..=8 => fold_among::<D, R, 8>(team, parts, data, work, merge),
+                _ => fold_among::<D, R, 32>(team, parts, data, work, merge),
             })
         })
     }
@@ -99,33 +99,61 @@ struct Chunk<D> {
     data: D,
 }
 
-/// A chunk until somebody takes it, and its result then. On cache lines of its own.
-#[repr(align(128))]
-struct Slot<D, R>(Mutex<(Option<Chunk<D>>, Option<R>)>);
+/// Two neighbouring chunks until somebody takes them, and their results then.
+struct Pair<D, R> {
+    chunks: [Option<Chunk<D>>; 2],
+    results: [Option<R>; 2],
+}
 
-impl<D, R> Slot<D, R> {
-    fn with<V>(&self, act: impl FnOnce(&mut (Option<Chunk<D>>, Option<R>)) -> V) -> V {
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+impl<D, R> Pair<D, R> {
+    /// The first chunk that nobody has taken yet, and its place.
+    fn take(&mut self) -> Option<(usize, Chunk<D>)> {
+        self.chunks.iter_mut().enumerate().find_map(|(place, chunk)| Some((place, chunk.take()?)))
     }
 }
 
-/// [`fold`] in `CHUNKS` chunks, a power of two, which members begin with at different ones.
-fn fold_among<D: Divide, R: Send, const CHUNKS: usize>(
+/// A pair on cache lines of its own. Pairs, as the same member takes both as a rule, and what takes time is lines that go from core to core.
+#[repr(align(128))]
+struct Slot<D, R>(Mutex<Pair<D, R>>);
+
+impl<D, R> Slot<D, R> {
+    fn new(chunks: [Option<Chunk<D>>; 2]) -> Self {
+        Self(Mutex::new(Pair { chunks, results: [None, None] }))
+    }
+
+    fn with<V>(&self, act: impl FnOnce(&mut Pair<D, R>) -> V) -> V {
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Lets `work` do what nobody has taken yet.
+    fn empty(&self, work: impl Fn(Chunk<D>) -> R) {
+        let mut next = self.with(Pair::take);
+        while let Some((place, chunk)) = next {
+            let result = work(chunk);
+            next = self.with(|pair| {
+                pair.results[place] = Some(result);
+                pair.take()
+            });
+        }
+    }
+}
+
+/// [`fold`] in twice as many chunks as there are `SLOTS`, a power of two, which members begin with at different ones.
+fn fold_among<D: Divide, R: Send, const SLOTS: usize>(
     team: &Team,
     parts: usize,
     data: D,
     work: &(impl Fn(usize, D) -> R + Sync),
     merge: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
-    let mut slots: [Slot<D, R>; CHUNKS] = std::array::from_fn(|_| Slot(Mutex::new((None, None))));
+    let mut slots: [Slot<D, R>; SLOTS] = std::array::from_fn(|_| Slot::new([None, None]));
     deal(Chunk { first: 0, parts, data }, &mut slots);
     team.share(&|member| {
-        let home = member * CHUNKS / team.members();
-        for slot in slots[home..].iter().chain(&slots[..home]) {
-            if let Some(Chunk { first, parts, data }) = slot.with(|(chunk, _)| chunk.take()) {
-                let result = fold(first, parts, data, work, merge);
-                slot.with(|(_, place)| *place = Some(result));
-            }
+        let home = member * SLOTS / team.members();
+        // Of two, the helper leaves alone what the leader began with before it: to look there takes a line to and fro.
+        let others = if team.members() == 2 { 0 } else { home };
+        for slot in slots[home..].iter().chain(&slots[..others]) {
+            slot.empty(|Chunk { first, parts, data }| fold(first, parts, data, work, merge));
         }
     });
     collect(parts, D::FEWEST, &mut slots, merge).expect("a loop is over when all its chunks are done")
@@ -133,20 +161,30 @@ fn fold_among<D: Divide, R: Send, const CHUNKS: usize>(
 
 /// Divides a chunk among the slots as [`fold`] does.
 fn deal<D: Divide, R>(Chunk { first, parts, data }: Chunk<D>, slots: &mut [Slot<D, R>]) {
-    if slots.len() == 1 || parts <= D::FEWEST {
-        slots[0] = Slot(Mutex::new((Some(Chunk { first, parts, data }), None)));
+    if parts <= D::FEWEST {
+        slots[0] = Slot::new([Some(Chunk { first, parts, data }), None]);
         return;
     }
-    let (half, (left_slots, right_slots)) = (parts / 2, slots.split_at_mut(slots.len() / 2));
+    let half = parts / 2;
     let (left, right) = data.divide(half);
-    deal(Chunk { first, parts: half, data: left }, left_slots);
-    deal(Chunk { first: first + half, parts: parts - half, data: right }, right_slots);
+    let left = Chunk { first, parts: half, data: left };
+    let right = Chunk { first: first + half, parts: parts - half, data: right };
+    if let [slot] = slots {
+        *slot = Slot::new([Some(left), Some(right)]);
+        return;
+    }
+    let (left_slots, right_slots) = slots.split_at_mut(slots.len() / 2);
+    deal(left, left_slots);
+    deal(right, right_slots);
 }
 
 /// Merges the results of the slots that `parts` were divided among.
 fn collect<D, R>(parts: usize, fewest: usize, slots: &mut [Slot<D, R>], merge: &impl Fn(R, R) -> R) -> Option<R> {
-    if slots.len() == 1 || parts <= fewest {
-        return slots[0].with(|(_, result)| result.take());
+    if parts <= fewest {
+        return slots[0].with(|pair| pair.results[0].take());
+    }
+    if let [slot] = slots {
+        return slot.with(|Pair { results: [left, right], .. }| Some(merge(left.take()?, right.take()?)));
     }
     let (half, (left, right)) = (parts / 2, slots.split_at_mut(slots.len() / 2));
     Some(merge(collect(half, fewest, left, merge)?, collect(parts - half, fewest, right, merge)?))

@@ -91,7 +91,7 @@ impl<T: Scalar> World<T> {
     /// Remembers where everything is.
     fn keep(&mut self) {
         for body in &mut self.bodies {
-            body.backup.keep(&body.state);
+            body.backup.keep(&body.state, &body.scratch.executor);
         }
         self.keep_tools();
     }

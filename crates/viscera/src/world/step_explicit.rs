@@ -82,6 +82,10 @@ impl<T: Scalar> World<T> {
                 self.undo();
                 return Err(Refused::ForGood(self.too_stiff(&fastest, f64::from(taken) / share)));
             }
+            if T::from_f64(leg.substep(step)) == T::ZERO {
+                // No time passes in sub-steps that short, and there would be millions of them.
+                return Err(Refused::Stiffened);
+            }
             self.advance(span, leg, stages);
             (share, taken) = (leg.to, taken + leg.substeps);
 
