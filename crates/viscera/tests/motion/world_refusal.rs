@@ -8,10 +8,10 @@ use viscera::world::{Integrator, StepError, Substep, World, WorldConfig, WorldEr
 
 use crate::support::{DENSITY, Vector, bits, free_bar, in_both_precisions, linear, side, stvk, world};
 
-/// A pull that grows from nothing to `peak` [N] at 0.1 s.
-fn pull(peak: f64) -> Load {
+/// A pull on a side that grows from nothing to `peak` [N] at 0.1 s.
+fn pull(at: &str, peak: f64) -> Load {
     let points = vec![(0.05, Vector::ZERO), (0.1, Vector::new(0.0, 0.0, peak))];
-    Load::Force { region: side("z-max"), total: Curve::piecewise_linear(points).unwrap() }
+    Load::Force { region: side(at), total: Curve::piecewise_linear(points).unwrap() }
 }
 
 /// Only laws whose force grows faster than the displacement: linear tissue bears any load, if by stretching absurdly.
@@ -30,7 +30,7 @@ fn bodies() -> [Body; 3] {
 fn a_load_far_too_strong_is_refused_and_undone<T: Precision>(peak: f64) {
     for body in bodies() {
         let mut world = world::<T>([0.0; 3], 5e-3);
-        let body = body.name("torn bar").fix(side("z-min")).load(pull(peak));
+        let body = body.name("torn bar").fix(side("z-min")).load(pull("z-max", peak));
         let id = world.add(body).unwrap();
         let (error, before) = (0..40)
             .find_map(|_| {
@@ -49,6 +49,17 @@ fn a_load_far_too_strong_is_refused_and_undone<T: Precision>(peak: f64) {
     }
 }
 in_both_precisions!(a_load_far_too_strong_is_refused_and_undone, f32: 1e30, f64: 1e30);
+
+/// Tissue that nothing holds is torn as well, and refused in no time: sub-steps of no length went by in millions.
+fn a_body_torn_from_both_sides_is_refused<T: Precision>(peak: f64) {
+    for body in bodies() {
+        let mut world = world::<T>([0.0; 3], 5e-3);
+        world.add(body.name("torn bar").load(pull("z-max", peak)).load(pull("z-min", -peak))).unwrap();
+        let error = (0..40).find_map(|_| world.step().err()).expect("no step was refused");
+        assert!(error.to_string().contains("torn bar"), "{error}");
+    }
+}
+in_both_precisions!(a_body_torn_from_both_sides_is_refused, f32: 1e30, f64: 1e30);
 
 /// Tissue that stiffens beyond a fixed sub-step is told the one that would do, at the step where it happens.
 #[test]
