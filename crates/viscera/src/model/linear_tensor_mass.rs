@@ -12,7 +12,7 @@ use super::tensor_mass::{EntityLoop, Frame, LinearEdge, LinearVertex, RestShape}
 use super::{BlockSink, ForceModel, GenericRecipe, ModelError, ModelInfo, ModelKind, Precision, Scratch, recipe};
 use crate::executor::{NodeBlocks, ReadBlocks, node_blocks};
 use crate::material::{LawKind, Tissue};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
 use crate::mesh::VolumeMesh;
 
 pub(super) const LAWS: &[LawKind] = &[LawKind::LinearElastic, LawKind::TransverseLinear];
@@ -95,10 +95,7 @@ impl<T: Scalar> ForceModel<T> for LinearModel<T> {
         let frame = Frame::along(x);
         let data = (NodeBlocks(&mut scratch.nodal), (ReadBlocks(x), ReadBlocks(&self.arms)));
         scratch.executor.each(node_blocks(x.len()), data, &|_, (nodal, (x, arms))| {
-            for (row, (x, arm)) in nodal.0.iter_mut().zip(x.0.iter().zip(arms.0)) {
-                let u = frame.displacement(*x, *arm);
-                *row = [u.x, u.y, u.z, T::ONE];
-            }
+            dispatch!(dispatch_level(), _simd => frame.write_displacements(x.0, arms.0, nodal.0));
         });
         self.add_stiffness_times(scratch);
         scratch.finish(out);

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::block_table::BlockTable;
 use super::patch::{Patches, clear};
 use crate::executor::{Divide, Executor, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3, dispatch, dispatch_level};
 
 /// Batches in a section. Fewer, and copies at the seams weigh; more, and ten thousand cells are too few sections for two threads.
 const BATCHES: usize = 64;
@@ -149,7 +149,7 @@ pub(super) fn fill<T: Scalar>(executor: &Executor, rows: &mut [[T; 4]], vectors:
     assert_eq!(rows.len(), vectors.len(), "arrays and scratch must be those of the model's mesh");
     let data = (NodeBlocks(rows), ReadBlocks(vectors));
     executor.each(node_blocks(vectors.len()), data, &|_, (NodeBlocks(rows), ReadBlocks(vectors))| {
-        rows.iter_mut().zip(vectors).for_each(|(row, v)| *row = [v.x, v.y, v.z, T::ZERO]);
+        dispatch!(dispatch_level(), _simd => write_rows(rows, vectors));
     });
 }
 
@@ -158,6 +158,20 @@ pub(super) fn add_rows<T: Scalar>(executor: &Executor, rows: &[[T; 4]], out: &mu
     assert_eq!(rows.len(), out.len(), "arrays and scratch must be those of the model's mesh");
     let data = (ReadBlocks(rows), NodeBlocks(out));
     executor.each(node_blocks(rows.len()), data, &|_, (ReadBlocks(rows), NodeBlocks(out))| {
-        rows.iter().zip(out).for_each(|(&[x, y, z, _], out)| *out += Vec3::new(x, y, z));
+        dispatch!(dispatch_level(), _simd => add_up_rows(rows, out));
     });
+}
+
+#[inline(always)]
+fn write_rows<T: Scalar>(rows: &mut [[T; 4]], vectors: &[Vec3<T>]) {
+    for (row, v) in rows.iter_mut().zip(vectors) {
+        *row = [v.x, v.y, v.z, T::ZERO];
+    }
+}
+
+#[inline(always)]
+fn add_up_rows<T: Scalar>(rows: &[[T; 4]], out: &mut [Vec3<T>]) {
+    for (&[x, y, z, _], out) in rows.iter().zip(out) {
+        *out += Vec3::new(x, y, z);
+    }
 }

@@ -1,4 +1,5 @@
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, node_blocks};
+use crate::math::{dispatch, dispatch_level};
 
 /// Where the copies of nodes are among the rows of all patches.
 ///
@@ -48,13 +49,19 @@ impl Copies {
     /// Hands each node to `add` with the row of each of its copies.
     pub(super) fn each<V: Send>(&self, executor: &Executor, out: &mut [V], add: &(impl Fn(&mut V, usize) + Sync)) {
         executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
-            for (sum, &row) in out.iter_mut().zip(self.firsts(block, NODE_BLOCK)) {
-                if row != NONE {
-                    add(sum, row as usize);
-                }
-            }
-            self.each_other(block, out, add);
+            dispatch!(dispatch_level(), _simd => self.each_of_block(block, out, add));
         });
+    }
+
+    /// The same for a block of nodes.
+    #[inline(always)]
+    fn each_of_block<V>(&self, block: usize, out: &mut [V], add: &impl Fn(&mut V, usize)) {
+        for (sum, &row) in out.iter_mut().zip(self.firsts(block, NODE_BLOCK)) {
+            if row != NONE {
+                add(sum, row as usize);
+            }
+        }
+        self.each_other(block, out, add);
     }
 
     /// The rows of the first copies of `nodes` nodes of a block; [`NONE`] where there is none, which is beyond all rows.

@@ -7,7 +7,7 @@
 //! body that has only moved. In its own frame it loses none.
 
 use crate::math::rotation::svd;
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3, dispatch, dispatch_level};
 use crate::model::BlockSink;
 
 /// Where a body is as a whole.
@@ -21,7 +21,7 @@ impl<T: Scalar> Frame<T> {
     /// The frame that moves along with nodes now at `x` and does not turn: for forces that turning changes.
     pub(crate) fn along<U: Scalar>(x: &[Vec3<U>]) -> Self {
         let first = x.first().map_or(Vec3::ZERO, |x| x.cast::<f64>());
-        let sum = x.iter().fold(Vec3::ZERO, |sum, x| sum + (x.cast::<f64>() - first));
+        let sum = dispatch!(dispatch_level(), _simd => sum_from(first, x));
         let centre = first + sum / x.len().max(1) as f64;
         Self { centre: centre.cast(), turn: Mat3::IDENTITY }
     }
@@ -40,18 +40,28 @@ impl<T: Scalar> Frame<T> {
     }
 
     /// Displacement seen from the frame of a node at `x`.
+    #[inline(always)]
     pub(crate) fn displacement(&self, x: Vec3<T>, arm: Vec3<T>) -> Vec3<T> {
         self.turn.transpose_mul(x - self.centre) - arm
     }
 
+    /// Rows of the displacements of nodes at `x`, and of weights of 1.
+    #[inline(always)]
+    pub(crate) fn write_displacements(&self, x: &[Vec3<T>], arms: &[Vec3<T>], rows: &mut [[T; 4]]) {
+        for (row, (x, arm)) in rows.iter_mut().zip(x.iter().zip(arms)) {
+            let u = self.displacement(*x, *arm);
+            *row = [u.x, u.y, u.z, T::ONE];
+        }
+    }
+
     /// Makes directions in the frame of directions in the world.
     pub(super) fn enter(&self, directions: &mut [[T; 4]]) {
-        turn(directions, &self.turn.transpose());
+        dispatch!(dispatch_level(), _simd => turn(directions, &self.turn.transpose()));
     }
 
     /// Makes forces in the world of forces in the frame.
     pub(super) fn leave(&self, forces: &mut [[T; 4]]) {
-        turn(forces, &self.turn);
+        dispatch!(dispatch_level(), _simd => turn(forces, &self.turn));
     }
 
     /// A sink of blocks in the frame that gives them to `sink` in the world: R K' Rᵀ.
@@ -76,6 +86,19 @@ impl<T: Scalar> BlockSink<T> for Leaving<'_, T> {
     }
 }
 
+/// Σ (x − `first`). In several sums, as each would wait for the one before it: a twentieth of linear forces.
+#[inline(always)]
+fn sum_from<T: Scalar>(first: Vec3<f64>, x: &[Vec3<T>]) -> Vec3<f64> {
+    let mut sums = [Vec3::ZERO; 8];
+    for x in x.chunks(sums.len()) {
+        for (sum, x) in sums.iter_mut().zip(x) {
+            *sum += x.cast::<f64>() - first;
+        }
+    }
+    sums.into_iter().fold(Vec3::ZERO, |all, sum| all + sum)
+}
+
+#[inline(always)]
 fn turn<T: Scalar>(rows: &mut [[T; 4]], by: &Mat3<T>) {
     for row in rows {
         let turned = *by * Vec3::new(row[0], row[1], row[2]);
