@@ -55,7 +55,7 @@ pub struct SimulatedBody<T: Scalar> {
     pub(crate) scratch: Scratch<T>,
     /// Whether the models are prepared for products at the positions and cells of the forces, if those are current.
     pub(crate) is_linearized: bool,
-    /// Memory of explicit steps for the nodes that are not free.
+    /// Memory of explicit steps for the nodes that are driven, and for those that stay where they are.
     pub(crate) driven: Vec<Driven<T>>,
     pub(crate) still: Vec<Still<T>>,
     /// Whether nothing meets it between the sub-steps of an explicit step.

@@ -27,6 +27,13 @@ pub enum NodeMotion {
     Following,
 }
 
+impl NodeMotion {
+    /// Whether the node stays where it is, whatever time it is and whatever else moves.
+    pub(crate) fn is_still(self) -> bool {
+        matches!(self, Self::Fixed | Self::Retired)
+    }
+}
+
 /// A node that is driven, as it was before all nodes were moved as if they were free: explicit steps move nodes in whole
 /// registers, and put the few others right afterwards.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +43,7 @@ pub(crate) struct Driven<T> {
     pub(crate) velocity: Vec3<T>,
 }
 
-/// A node that stays where it is, which takes less to put right: in a body held on one side it is a fiftieth of a step on two threads.
+/// A node that stays where it is: it takes less to put right than a driven one, which other threads wait for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Still<T> {
     pub(crate) node: usize,
@@ -116,13 +123,6 @@ impl<T: Scalar> PastState<T> {
         self.positions.clone_from(&other.positions);
         self.velocities.clone_from(&other.velocities);
         self.is_known = other.is_known;
-    }
-}
-
-impl NodeMotion {
-    /// Whether the node stays where it is, whatever time it is and whatever else moves.
-    pub(crate) fn is_still(self) -> bool {
-        matches!(self, Self::Fixed | Self::Retired)
     }
 }
 

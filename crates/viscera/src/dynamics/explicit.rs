@@ -97,15 +97,15 @@ pub fn begin<T: Scalar>(body: &mut SimulatedBody<T>, is_tied: bool, time: f64, g
     body.is_left_alone = !is_met && body.constraints.is_empty() && !body.has_changing_forces();
 }
 
-/// Nodes that are not free. Looked for in dozens, without a branch for each, as most are free and every step looks at all.
+/// Nodes that are not free. Many are looked at together, without a branch for each, as most are free and every step looks at all.
 fn not_free(motions: &[NodeMotion]) -> impl Iterator<Item = (usize, NodeMotion)> + '_ {
-    const DOZENS: usize = 48;
+    const TOGETHER: usize = 48;
     let is_free = |motion: &NodeMotion| matches!(motion, NodeMotion::Free);
-    let blocks = motions.chunks(DOZENS).enumerate();
+    let blocks = motions.chunks(TOGETHER).enumerate();
     let mixed = blocks.filter(move |(_, motions)| !motions.iter().fold(true, |all, motion| all & is_free(motion)));
     mixed.flat_map(move |(block, motions)| {
         let nodes = motions.iter().enumerate().filter(move |(_, motion)| !is_free(motion));
-        nodes.map(move |(number, &motion)| (block * DOZENS + number, motion))
+        nodes.map(move |(number, &motion)| (block * TOGETHER + number, motion))
     })
 }
 
@@ -258,14 +258,12 @@ fn sum_kick_and_drift<T: Scalar>(body: &mut SimulatedBody<T>, pace: Pace<T>, sta
 fn kick_guided_twice<T: Scalar>(body: &mut SimulatedBody<T>, pace: Pace<T>) {
     let is_guided = |driven: &&Driven<T>| matches!(body.state.motions[driven.node], NodeMotion::Guided(_));
     for &Driven { node, position, velocity } in body.driven.iter().filter(is_guided) {
-        let only = node..=node;
-        let (external, internal) = (&body.external_forces[only.clone()], &body.state.internal_forces[only.clone()]);
-        let accelerations = (external, internal, &body.state.masses[only]);
-        let (mut x, mut v) = ([position], [velocity]);
-        kick_freely(&mut v, accelerations, pace);
-        v[0] = free_directions(&body.guides, body.state.motions[node]).merge(v[0], velocity);
-        kick_and_drift_freely(&mut x, &mut v, accelerations, pace);
-        body.state.velocities[node] = v[0];
+        let force = body.external_forces[node] - body.state.internal_forces[node];
+        let (mass, mut x, mut v) = (body.state.masses[node], position, velocity);
+        pace.kick(&mut v, force, mass);
+        v = free_directions(&body.guides, body.state.motions[node]).merge(v, velocity);
+        pace.kick_and_drift(&mut x, &mut v, force, mass);
+        body.state.velocities[node] = v;
     }
 }
 
