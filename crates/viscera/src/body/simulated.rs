@@ -9,7 +9,7 @@ use crate::constraint::{Constraints, KeptVolume};
 use crate::contact::Contacts;
 use crate::curve::Curve;
 use crate::material::LawKind;
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, large_pages};
 use crate::mesh::{VolumeMesh, cells_of_nodes};
 use crate::model::frequency::FrequencyBound;
 use crate::model::precomputed::Supports;
@@ -415,12 +415,12 @@ fn initial_state<T: Scalar>(
         return Err(BodyError::IsolatedNode { body: body.into(), node });
     }
     Ok(BodyState {
-        positions: mesh.nodes().iter().map(|node| node.cast()).collect(),
-        velocities: vec![Vec3::ZERO; nodes],
-        internal_forces: vec![Vec3::ZERO; nodes],
+        positions: large_pages::moved(mesh.nodes().iter().map(|node| node.cast()).collect()),
+        velocities: large_pages::filled(nodes, Vec3::ZERO),
+        internal_forces: large_pages::filled(nodes, Vec3::ZERO),
         motions,
         grips: vec![Vec3::ZERO; nodes],
-        masses: masses.into_iter().map(T::from_f64).collect(),
+        masses: large_pages::moved(masses.into_iter().map(T::from_f64).collect()),
         removed: vec![false; mesh.cell_count()],
         removed_count: 0,
         removals: Removals::for_cells(mesh.cell_count()),

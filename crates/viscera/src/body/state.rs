@@ -4,7 +4,7 @@ use super::Removals;
 use crate::constraint::KeptVolume;
 use crate::contact::Traction;
 use crate::executor::{Executor, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
+use crate::math::{Scalar, Vec3, large_pages};
 use crate::model::ForceModel;
 use crate::solver::Reach;
 
@@ -211,7 +211,9 @@ fn copy<V: Copy>((NodeBlocks(to), ReadBlocks(from)): Copying<'_, V>) {
 impl<T: Scalar> MotionBackup<T> {
     /// A first backup, which brings its memory with it.
     pub(crate) fn new(state: &BodyState<T>) -> Self {
-        let mut backup = Self::default();
+        let vectors = || large_pages::room_for(state.positions.len());
+        let (positions, velocities, internal_forces) = (vectors(), vectors(), vectors());
+        let mut backup = Self { positions, velocities, internal_forces, ..Self::default() };
         backup.keep(state, &Executor::serial());
         backup
     }

@@ -3,6 +3,7 @@
 mod dual;
 mod instruction_set;
 mod lanes;
+pub(crate) mod large_pages;
 mod mat3;
 mod prefetch;
 mod real;

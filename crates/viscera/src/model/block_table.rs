@@ -1,8 +1,8 @@
-use crate::math::prefetch;
+use crate::math::{large_pages, prefetch};
 
 /// A table whose rows lie in blocks of as many rows as a batch has lanes, column after column within a block: a batch of
 /// lanes reads one column of its rows as one contiguous load.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct BlockTable<V> {
     lanes: usize,
     columns: usize,
@@ -10,10 +10,18 @@ pub(crate) struct BlockTable<V> {
     values: Vec<V>,
 }
 
+impl<V: Copy> Clone for BlockTable<V> {
+    fn clone(&self) -> Self {
+        let mut values = large_pages::room_for(self.values.len());
+        values.extend_from_slice(&self.values);
+        Self { values, ..*self }
+    }
+}
+
 impl<V: Copy> BlockTable<V> {
     /// A table of `rows` rows, padded with further rows to whole blocks, every entry `fill`.
     pub(crate) fn new(lanes: usize, rows: usize, columns: usize, fill: V) -> Self {
-        Self { lanes, columns, rows, values: vec![fill; rows.div_ceil(lanes) * lanes * columns] }
+        Self { lanes, columns, rows, values: large_pages::filled(rows.div_ceil(lanes) * lanes * columns, fill) }
     }
 
     /// Rows, without the padding.

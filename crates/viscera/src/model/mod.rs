@@ -47,7 +47,7 @@ pub use volume_penalty::VolumePenalty;
 use self::frequency::FrequencyBound;
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3, large_pages};
 use crate::solver::Turn;
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
@@ -202,7 +202,7 @@ pub struct Scratch<T> {
 impl<T: Scalar> Scratch<T> {
     /// Scratch for a body of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
-        let rows = || vec![[T::ZERO; 4]; nodes];
+        let rows = || large_pages::filled(nodes, [T::ZERO; 4]);
         Self {
             nodal: rows(),
             direction: rows(),
@@ -223,7 +223,8 @@ impl<T: Scalar> Scratch<T> {
     pub fn for_models(nodes: usize, models: &[Box<dyn ForceModel<T>>]) -> Self {
         let kept = models.iter().map(|model| model.linearization_len()).max().unwrap_or(0);
         let sums = models.iter().map(|model| model.sum_rows()).max().unwrap_or(0);
-        Self { linearization: vec![T::ZERO; kept], sums: vec![[T::ZERO; 4]; sums], ..Self::new(nodes) }
+        let (linearization, sums) = (large_pages::filled(kept, T::ZERO), large_pages::filled(sums, [T::ZERO; 4]));
+        Self { linearization, sums, ..Self::new(nodes) }
     }
 
     /// Rows of the copies of nodes, as they were summed last.

@@ -1,5 +1,5 @@
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{dispatch, dispatch_level};
+use crate::math::{dispatch, dispatch_level, large_pages};
 
 /// Where the copies of nodes are among the rows of all patches.
 ///
@@ -22,7 +22,7 @@ impl Copies {
     /// Those of `nodes` nodes: node and row of each, in the order of the patches.
     pub(super) fn new(nodes: usize, mut copies: Vec<(u32, u32)>) -> Self {
         copies.sort_by_key(|&(node, _)| node);
-        let mut firsts = vec![NONE; nodes];
+        let mut firsts = large_pages::filled(nodes, NONE);
         let mut others = Vec::new();
         for (node, row) in copies {
             if firsts[node as usize] == NONE {
@@ -33,7 +33,7 @@ impl Copies {
         }
         let start = |block: usize| others.partition_point(|&(node, _)| (node as usize) < block * NODE_BLOCK) as u32;
         let starts = (0..=node_blocks(nodes)).map(start).collect();
-        Self { firsts, others, starts }
+        Self { firsts, others: large_pages::moved(others), starts }
     }
 
     /// Size of the stored numbers [bytes].

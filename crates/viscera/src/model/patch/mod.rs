@@ -18,7 +18,7 @@ pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
 use crate::executor::{Divide, Executor, NodeBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level, large_pages};
 use crate::mesh::partition;
 
 /// The most nodes of a patch: places and forces of so many take 16 kB in single precision. A power of two, so that a number
@@ -76,6 +76,7 @@ impl Patches {
             patches.nodes.append(&mut touched);
             patches.starts.push(patches.nodes.len());
         }
+        patches.nodes = large_pages::moved(patches.nodes);
         patches.copies = Copies::new(nodes, copies);
         patches
     }

@@ -5,7 +5,9 @@ use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Keep, Largest, Scatter, ScatterAndMeasure, ScatterBlocks, Visitor, starts};
 use super::{PatchRows, Patches, PerPatch, clear, no_rows};
 use crate::executor::Executor;
-use crate::math::{Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level};
+use crate::math::{
+    Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level, large_pages,
+};
 use crate::mesh::TetMesh;
 use crate::model::Sums;
 use crate::model::lane_vector::nothing;
@@ -71,6 +73,7 @@ impl TetFans {
             order.batch_starts.push(order.batches.len());
             order.slot_starts.push(order.slots());
         }
+        order.nodes = large_pages::moved(order.nodes);
         order
     }
 
