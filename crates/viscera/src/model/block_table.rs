@@ -10,6 +10,7 @@ pub(crate) struct BlockTable<V> {
     values: Vec<V>,
 }
 
+/// On large pages as well: a world that was put back to a snapshot goes on with clones.
 impl<V: Copy> Clone for BlockTable<V> {
     fn clone(&self) -> Self {
         let mut values = large_pages::room_for(self.values.len());
