@@ -20,16 +20,46 @@ const LINES: u32 = 30;
 /// share. Single samples waver by that much, as the system takes pages back and hands them out again: 15.3 to 16.6 MB were seen.
 const GROWTH: f64 = 0.05;
 
-/// How often it is looked at, however many rounds there are: a list with a place for each would be memory that grows, 0.4 MB in an hour.
-const SAMPLES: usize = 300;
+/// The most samples of the memory that are kept. With one for each round they would be memory that grows: 0.4 MB in an hour.
+const SAMPLES: usize = 512;
 
-/// What was played, and the memory of the program after some of the rounds [bytes].
+/// What was played, and how much memory the program took.
 #[derive(Clone, Debug)]
 struct Played {
     rounds: usize,
     steps: u64,
     time: Duration,
+    /// After the first round and every `stride`-th from there on [bytes].
     memory: Vec<usize>,
+    stride: usize,
+}
+
+impl Played {
+    fn nothing() -> Self {
+        Self { rounds: 0, steps: 0, time: Duration::ZERO, memory: Vec::with_capacity(SAMPLES), stride: 1 }
+    }
+
+    /// One more round, of so many steps, after so much time, with so much memory at its end [bytes].
+    fn add_round(&mut self, steps: u64, time: Duration, resident: usize) {
+        if self.rounds.is_multiple_of(self.stride) {
+            if self.memory.len() == SAMPLES {
+                self.keep_every_second();
+            }
+            self.memory.push(resident);
+        }
+        self.rounds += 1;
+        self.steps += steps;
+        self.time = time;
+    }
+
+    fn keep_every_second(&mut self) {
+        let mut is_kept = false;
+        self.memory.retain(|_| {
+            is_kept = !is_kept;
+            is_kept
+        });
+        self.stride *= 2;
+    }
 }
 
 pub(super) fn soak(arguments: &SoakArguments) -> Result<(), Failure> {
@@ -51,25 +81,17 @@ fn soak_in<T: Precision>(arguments: &SoakArguments, open: &OpenScene, interrupt:
         arguments.duration
     ));
     say("   time   rounds        steps   memory");
-    let (begin, mut told) = (Instant::now(), 0);
-    let memory = Vec::with_capacity(SAMPLES + 1);
-    let mut played = Played { rounds: 0, steps: 0, time: Duration::ZERO, memory };
+    let (begin, mut played, mut told) = (Instant::now(), Played::nothing(), 0);
     let is_cut_short = Cell::new(false);
     while begin.elapsed() < duration && !is_cut_short.get() {
         // A round is played to its end, whatever the clock says, so that the last sample is as good as the others.
-        played.steps += rounds.play(|| {
+        let steps = rounds.play(|| {
             is_cut_short.set(interrupt.is_asked());
             is_cut_short.get()
         })?;
-        played.rounds += 1;
-        played.time = begin.elapsed();
-        let share = (played.time.as_secs_f64() / arguments.duration).min(1.0);
-        if played.memory.len() as f64 > share * SAMPLES as f64 {
-            continue;
-        }
         let resident = resident()?;
-        played.memory.push(resident);
-        let line = (f64::from(LINES) * share) as u32;
+        played.add_round(steps, begin.elapsed(), resident);
+        let line = (f64::from(LINES) * played.time.as_secs_f64() / arguments.duration) as u32;
         if played.rounds == 1 || line > told {
             told = line;
             say(&format!(
@@ -89,7 +111,7 @@ fn soak_in<T: Precision>(arguments: &SoakArguments, open: &OpenScene, interrupt:
 }
 
 /// Says how the memory went, and fails if it grew.
-fn judge(Played { rounds, steps, time, memory }: &Played) -> Result<(), Failure> {
+fn judge(Played { rounds, steps, time, memory, .. }: &Played) -> Result<(), Failure> {
     // The first round brings what every later one uses again.
     let settled = if memory.len() > 3 { &memory[1..] } else { memory };
     let third = settled.len().div_ceil(3);
@@ -135,16 +157,33 @@ fn megabytes(bytes: usize) -> String {
 mod tests {
     use super::*;
 
-    fn played(memory: impl Fn(usize) -> usize) -> Played {
-        Played { rounds: 100, steps: 1000, time: Duration::from_secs(100), memory: (1..=100).map(memory).collect() }
+    fn played(rounds: usize, memory: impl Fn(usize) -> usize) -> Played {
+        let mut played = Played::nothing();
+        (1..=rounds).for_each(|round| played.add_round(10, Duration::from_secs(round as u64), memory(round)));
+        played
     }
 
     #[test]
     fn memory_that_grows_all_the_time_is_a_failure_and_a_start_that_settles_is_not() {
-        let leak = played(|second| 20_000_000 + 50_000 * second);
+        let leak = played(100, |second| 20_000_000 + 50_000 * second);
         let failure = judge(&leak).expect_err("it grows").to_string();
         assert!(failure.contains("the memory grows by more than 5 %"), "{failure}");
-        assert!(judge(&played(|second| if second == 1 { 10_000_000 } else { 20_000_000 })).is_ok());
-        assert!(judge(&played(|second| 15_300_000 + 130_000 * (second * 7 % 11))).is_ok());
+        assert!(judge(&played(100, |second| if second == 1 { 10_000_000 } else { 20_000_000 })).is_ok());
+        assert!(judge(&played(100, |second| 15_300_000 + 130_000 * (second * 7 % 11))).is_ok());
+    }
+
+    /// A soak of days must not be what it looks for.
+    #[test]
+    fn samples_stay_few_and_evenly_spread_however_many_rounds_there_are() {
+        for rounds in [1, 511, 512, 513, 1024, 1025, 100_000] {
+            let Played { rounds: counted, steps, memory, stride, .. } = played(rounds, |round| round);
+            assert_eq!((counted, steps), (rounds, 10 * rounds as u64));
+            let expected: Vec<usize> = (1..=rounds).step_by(stride).collect();
+            assert_eq!(memory, expected, "{rounds} rounds");
+            assert!(memory.len() <= SAMPLES, "{rounds} rounds");
+            assert!(memory.len() > SAMPLES / 2 || stride == 1, "{rounds} rounds keep {} samples", memory.len());
+        }
+        let leak = played(100_000, |round| 20_000_000 + 50 * round);
+        assert!(judge(&leak).is_err(), "5 MB in 100 000 rounds");
     }
 }
