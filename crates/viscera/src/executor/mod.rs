@@ -67,7 +67,18 @@ impl Executor {
         self.fold(parts, data, work, &|(), ()| ());
     }
 
-    /// The same where every part has a result: neighbours are merged two by two, always the same two. None without parts.
+    /// The same with memory that is made once for many parts, and comes as the part before has left it.
+    pub(crate) fn each_with<M, D: Divide>(
+        &self,
+        memory: &(impl Fn() -> M + Sync),
+        parts: usize,
+        data: D,
+        work: &(impl Fn(usize, D, &mut M) + Sync),
+    ) {
+        self.fold_with(memory, parts, data, work, &|(), ()| ());
+    }
+
+    /// [`Executor::each`] where every part has a result: neighbours are merged two by two, always the same two. None without parts.
     pub(crate) fn fold<D: Divide, R: Send>(
         &self,
         parts: usize,
@@ -75,18 +86,30 @@ impl Executor {
         work: &(impl Fn(usize, D) -> R + Sync),
         merge: &(impl Fn(R, R) -> R + Sync),
     ) -> Option<R> {
+        self.fold_with(&|| (), parts, data, &|part, data, ()| work(part, data), merge)
+    }
+
+    /// The same with memory as in [`Executor::each_with`].
+    pub(crate) fn fold_with<M, D: Divide, R: Send>(
+        &self,
+        memory: &(impl Fn() -> M + Sync),
+        parts: usize,
+        data: D,
+        work: &(impl Fn(usize, D, &mut M) -> R + Sync),
+        merge: &(impl Fn(R, R) -> R + Sync),
+    ) -> Option<R> {
         if parts == 0 {
             return None;
         }
         let Some(team) = self.team.as_ref().filter(|_| parts > D::FEWEST) else {
-            return Some(fold(0, parts, data, work, merge));
+            return Some(fold(&mut memory(), 0, parts, data, work, merge));
         };
         team.lead(|| {
             Some(match team.members() {
-                _ if !team.is_at_hand() => fold(0, parts, data, work, merge),
-                2 => fold_among::<D, R, 2>(team, parts, data, work, merge),
-                3..=8 => fold_among::<D, R, 8>(team, parts, data, work, merge),
-                _ => fold_among::<D, R, 32>(team, parts, data, work, merge),
+                _ if !team.is_at_hand() => fold(&mut memory(), 0, parts, data, work, merge),
+                2 => fold_among::<M, D, R, 2>(team, memory, parts, data, work, merge),
+                3..=8 => fold_among::<M, D, R, 8>(team, memory, parts, data, work, merge),
+                _ => fold_among::<M, D, R, 32>(team, memory, parts, data, work, merge),
             })
         })
     }
@@ -139,11 +162,12 @@ impl<D, R> Slot<D, R> {
 }
 
 /// [`fold`] in twice as many chunks as there are `SLOTS`, a power of two, which members begin with at different ones.
-fn fold_among<D: Divide, R: Send, const SLOTS: usize>(
+fn fold_among<M, D: Divide, R: Send, const SLOTS: usize>(
     team: &Team,
+    memory: &(impl Fn() -> M + Sync),
     parts: usize,
     data: D,
-    work: &(impl Fn(usize, D) -> R + Sync),
+    work: &(impl Fn(usize, D, &mut M) -> R + Sync),
     merge: &(impl Fn(R, R) -> R + Sync),
 ) -> R {
     let mut slots: [Slot<D, R>; SLOTS] = std::array::from_fn(|_| Slot::new([None, None]));
@@ -153,7 +177,7 @@ fn fold_among<D: Divide, R: Send, const SLOTS: usize>(
         // Of two, the helper leaves alone what the leader began with before it: to look there takes a line to and fro.
         let others = if team.members() == 2 { 0 } else { home };
         for slot in slots[home..].iter().chain(&slots[..others]) {
-            slot.empty(|Chunk { first, parts, data }| fold(first, parts, data, work, merge));
+            slot.empty(|Chunk { first, parts, data }| fold(&mut memory(), first, parts, data, work, merge));
         }
     });
     collect(parts, D::FEWEST, &mut slots, merge).expect("a loop is over when all its chunks are done")
@@ -190,33 +214,34 @@ fn collect<D, R>(parts: usize, fewest: usize, slots: &mut [Slot<D, R>], merge: &
     Some(merge(collect(half, fewest, left, merge)?, collect(parts - half, fewest, right, merge)?))
 }
 
-fn fold<D: Divide, R>(
+fn fold<M, D: Divide, R>(
+    memory: &mut M,
     first: usize,
     parts: usize,
     data: D,
-    work: &impl Fn(usize, D) -> R,
+    work: &impl Fn(usize, D, &mut M) -> R,
     merge: &impl Fn(R, R) -> R,
 ) -> R {
     if parts == 1 {
-        return work.part(first, data);
+        return work.part(first, data, memory);
     }
     let half = parts / 2;
     let (left, right) = data.divide(half);
-    let left = fold(first, half, left, work, merge);
-    merge(left, fold(first + half, parts - half, right, work, merge))
+    let left = fold(memory, first, half, left, work, merge);
+    merge(left, fold(memory, first + half, parts - half, right, work, merge))
 }
 
 /// What is done with each part.
-trait Work<D, R>: Fn(usize, D) -> R {
+trait Work<M, D, R>: Fn(usize, D, &mut M) -> R {
     /// Does it with one. Out of line, as the loops with and without a pool would each have the whole of it within them otherwise; and a method,
     /// as those are compiled along with the closure that they are of, and functions with this file, all in one unit.
     #[inline(never)]
-    fn part(&self, number: usize, data: D) -> R {
-        self(number, data)
+    fn part(&self, number: usize, data: D, memory: &mut M) -> R {
+        self(number, data, memory)
     }
 }
 
-impl<D, R, W: Fn(usize, D) -> R> Work<D, R> for W {}
+impl<M, D, R, W: Fn(usize, D, &mut M) -> R> Work<M, D, R> for W {}
 
 /// Arrays that can be divided between threads.
 pub(crate) trait Divide: Send + Sized {
@@ -279,6 +304,7 @@ impl<A: Divide, B: Divide> Divide for (A, B) {
 #[cfg(test)]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::sync::mpsc::channel;
     use std::time::Duration;
 
@@ -299,6 +325,27 @@ mod tests {
                 let inside = executor.enter(|| [sum(&executor, parts), sum(&executor, parts)]);
                 assert_eq!(inside, [expected; 2], "{parts} parts within a step on {threads} threads");
             }
+        }
+    }
+
+    /// Memory is handed from part to part of neighbours, none is left out, and no two threads have the same.
+    #[test]
+    fn memory_is_made_for_many_parts_at_once() {
+        for (threads, most) in [(1, 1), (2, 4), (8, 16)] {
+            let executor = Executor::threads(threads).unwrap();
+            let made = AtomicUsize::new(0);
+            let memory = || {
+                made.fetch_add(1, Ordering::Relaxed);
+                None
+            };
+            let follow = |part: usize, (), before: &mut Option<usize>| {
+                let last = before.replace(part);
+                (last.is_none_or(|last| last + 1 == part), 1)
+            };
+            let both = |(left, some): (bool, usize), (right, more): (bool, usize)| (left && right, some + more);
+            assert_eq!(executor.fold_with(&memory, 1000, (), &follow, &both), Some((true, 1000)));
+            let made = made.into_inner();
+            assert!((1..=most).contains(&made), "{made} for {threads} threads");
         }
     }
 

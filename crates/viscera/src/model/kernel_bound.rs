@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 
 use super::block_table::BlockTable;
 use super::frequency::{FrequencyBound, squared_frequency_of_tet};
-use super::patch::{ForcesAndInvariants, Measured};
-use super::tet_loop::{RestTet, TetConstants, TetKernel, TetLoop, TetMeasure};
+use super::patch::{ForcesAndInvariants, Measured, Shared};
+use super::tet_loop::{MAX_CONSTANTS, RestTet, TetConstants, TetKernel, TetLoop, TetMeasure};
 use super::{ModelError, Patches, Scratch};
 use crate::material::LawFamily;
 use crate::math::{Mat3, Part, Real, Scalar, Simd, Vec3};
@@ -15,13 +15,19 @@ use crate::mesh::TetMesh;
 
 /// A kernel that knows how stiff its law is.
 pub(super) trait BoundedKernel: TetKernel {
+    /// How many numbers of a tetrahedron the bound needs that forces do not.
+    const BOUND_CONSTANTS: usize = 0;
+    /// Those numbers.
+    fn bound_constants(_rest: &RestTet) -> Vec<f64> {
+        Vec::new()
+    }
     /// Numbers of a deformed tetrahedron that tell how stiff it is; zeros where the kernel needs fewer.
     fn invariants<R: Real>(constants: &[R], d: &Mat3<R>) -> [R; 3];
-    /// V times the law's [`stiffness_bound`](crate::material::Law::stiffness_bound) [J], as a function of those.
-    fn stiffness_bound<R: Real>(constants: &[R], invariants: &[R; 3]) -> R;
+    /// The law's [`stiffness_bound`](crate::material::Law::stiffness_bound) as a function of those, times anything that does not change with them.
+    fn stiffness_bound<R: Real>(constants: &[R], bound_constants: &[R], invariants: &[R; 3]) -> R;
 }
 
-/// Constants: those of the kernel, then ω² at rest over the kernel's bound at rest.
+/// Constants: those of the kernel, those of its bound, then ω² at rest over the kernel's bound at rest.
 #[derive(Debug)]
 pub(super) struct KernelBound<K>(PhantomData<K>);
 
@@ -32,18 +38,19 @@ impl<K> Clone for KernelBound<K> {
 }
 
 impl<K: BoundedKernel> TetConstants for KernelBound<K> {
-    const CONSTANTS: usize = K::CONSTANTS + 1;
+    const CONSTANTS: usize = K::CONSTANTS + K::BOUND_CONSTANTS + 1;
 
     fn deactivate<T: Scalar>(constants: &mut BlockTable<T>, row: usize) {
-        *constants.get_mut(row, K::CONSTANTS) = T::ZERO;
+        *constants.get_mut(row, Self::CONSTANTS - 1) = T::ZERO;
     }
 }
 
 impl<K: BoundedKernel> TetMeasure for KernelBound<K> {
     #[inline(always)]
     fn measure<R: Real>(c: &[R], d: &Mat3<R>) -> R {
-        let own = &c[..K::CONSTANTS];
-        c[K::CONSTANTS] * K::stiffness_bound(own, &K::invariants(own, d))
+        let (of_kernel, of_bound) = c.split_at(K::CONSTANTS);
+        let (&factor, of_bound) = of_bound.split_last().expect("the factor is the last");
+        factor * K::stiffness_bound(of_kernel, of_bound, &K::invariants(of_kernel, d))
     }
 }
 
@@ -58,7 +65,10 @@ pub(super) fn kernel_bound<T: Scalar, K: BoundedKernel, L: LawFamily>(
         let corner_mass = density(rest.cell) * rest.volume / 4.0;
         let at_rest = squared_frequency_of_tet(&law, rest, corner_mass);
         let invariants = K::invariants(&constants, &rest.inverse.inverse());
-        constants.push(at_rest / K::stiffness_bound(&constants, &invariants));
+        let of_bound = K::bound_constants(rest);
+        let factor = at_rest / K::stiffness_bound(&constants, &of_bound, &invariants);
+        constants.extend(of_bound);
+        constants.push(factor);
         constants
     })?;
     Ok(Box::new(bound))
@@ -90,6 +100,8 @@ struct Along<'a, T: Scalar, K> {
 }
 
 impl<T: Scalar, K: BoundedKernel> Measured<T> for Along<'_, T, K> {
+    const IS_SHARING: bool = K::IS_SHARING;
+
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
         self.tets.prefetch(slot);
@@ -102,16 +114,22 @@ impl<T: Scalar, K: BoundedKernel> Measured<T> for Along<'_, T, K> {
         part: Part<S>,
         slot: usize,
         edges: &Mat3<T::Lanes<S>>,
+        shared: &Shared<T::Lanes<S>>,
     ) -> ForcesAndInvariants<T::Lanes<S>> {
         let constants = self.tets.load(part, slot);
         let constants = &constants[..K::CONSTANTS];
-        (K::forces(constants, edges), K::invariants(constants, edges))
+        (K::forces_in_fan(constants, edges, shared), K::invariants(constants, edges))
     }
 
     #[inline(always)]
     fn measure<S: Simd>(&self, part: Part<S>, slot: usize, invariants: &[T::Lanes<S>; 3]) -> T::Lanes<S> {
         let constants = self.tets.load(part, slot);
-        self.bound.column(part, slot, K::CONSTANTS) * K::stiffness_bound(&constants[..K::CONSTANTS], invariants)
+        let mut of_bound = [constants[0]; MAX_CONSTANTS];
+        for (number, constant) in of_bound[..=K::BOUND_CONSTANTS].iter_mut().enumerate() {
+            *constant = self.bound.column(part, slot, K::CONSTANTS + number);
+        }
+        of_bound[K::BOUND_CONSTANTS]
+            * K::stiffness_bound(&constants[..K::CONSTANTS], &of_bound[..K::BOUND_CONSTANTS], invariants)
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::block_sink::add_tet_blocks;
 use super::block_table::BlockTable;
 use super::lane_vector;
-use super::patch::{Diagonal, Element, Measure, Measured, Patches, TetFans};
+use super::patch::{Diagonal, Element, Measure, Measured, Patches, Shared, TetFans};
 use super::{BlockSink, ModelError, Scratch};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 use crate::mesh::{MeshError, TetMesh};
@@ -30,6 +30,13 @@ pub(crate) trait TetKernel: TetConstants {
     fn energy<R: Real>(constants: &[R], d: &Mat3<R>) -> R;
     /// Internal forces [f1 f2 f3] = ∂W/∂D [N]; that on corner 0 is minus their sum.
     fn forces<R: Real>(constants: &[R], d: &Mat3<R>) -> Mat3<R>;
+    /// Whether [`TetKernel::forces_in_fan`] makes use of what tetrahedra share.
+    const IS_SHARING: bool = false;
+    /// [`TetKernel::forces`] with what the tetrahedra of a fan share.
+    #[inline(always)]
+    fn forces_in_fan<R: Real>(constants: &[R], d: &Mat3<R>, _shared: &Shared<R>) -> Mat3<R> {
+        Self::forces(constants, d)
+    }
     /// Whether [`TetKernel::mean_forces`] keeps energy.
     const KEEPS_ENERGY: bool = false;
     /// Forces between the edge matrices `from` and `to`; those in the middle, unless the kernel knows better.
@@ -222,20 +229,34 @@ struct Product<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 struct Mean<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 
 impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
+    const IS_SHARING: bool = K::IS_SHARING;
+
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
         self.0.prefetch(slot);
     }
 
     #[inline(always)]
-    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        K::forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0])
+    fn forces<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &[Mat3<T::Lanes<S>>; 1],
+        shared: &Shared<T::Lanes<S>>,
+    ) -> Mat3<T::Lanes<S>> {
+        K::forces_in_fan(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], shared)
     }
 }
 
 impl<T: Scalar, K: TetKernel> Element<T, 2> for Product<'_, T, K> {
     #[inline(always)]
-    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &[Mat3<T::Lanes<S>>; 2],
+        _shared: &Shared<T::Lanes<S>>,
+    ) -> Mat3<T::Lanes<S>> {
         K::product(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }
@@ -244,7 +265,13 @@ impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
     const IS_WIDE: bool = false;
 
     #[inline(always)]
-    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &[Mat3<T::Lanes<S>>; 2],
+        _shared: &Shared<T::Lanes<S>>,
+    ) -> Mat3<T::Lanes<S>> {
         K::mean_forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }

@@ -1,6 +1,6 @@
 //! What loops over tetrahedra ask of those who know them, slot by slot.
 
-use crate::math::{Mat3, Part, Scalar, Simd, Sym3};
+use crate::math::{Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
 
 /// What a loop makes of tetrahedra at which the lanes are, as a function of their edges in some nodal arrays.
 pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
@@ -8,8 +8,36 @@ pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
     const IS_WIDE: bool = true;
     /// Asks for the numbers of a slot that the loop will come to, if there is one.
     fn prefetch(&self, _slot: usize) {}
+    /// Whether it asks for what tetrahedra share along a fan, of the first of the arrays.
+    const IS_SHARING: bool = false;
     /// Forces on the corners 1, 2, 3 of the tetrahedra of a slot; that on corner 0 is minus their sum.
-    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
+    fn forces<S: Simd>(
+        &self,
+        part: Part<S>,
+        slot: usize,
+        edges: &[Mat3<T::Lanes<S>>; FIELDS],
+        shared: &Shared<T::Lanes<S>>,
+    ) -> Mat3<T::Lanes<S>>;
+}
+
+/// What the tetrahedra of a fan share: with the edges x (the axis), y and z of one, x is that of all, and z is y of the next.
+#[derive(Clone, Copy)]
+pub(crate) struct Shared<R> {
+    /// |x|².
+    pub(crate) axis_square: R,
+    /// x × y.
+    pub(crate) from: Vec3<R>,
+    /// x × z.
+    pub(crate) to: Vec3<R>,
+}
+
+impl<R: Real> Shared<R> {
+    /// That of the edges of one tetrahedron.
+    #[inline(always)]
+    pub(crate) fn of(edges: &Mat3<R>) -> Self {
+        let [x, y, z] = edges.columns;
+        Self { axis_square: x.squared_norm(), from: x.cross(y), to: x.cross(z) }
+    }
 }
 
 /// Blocks on the diagonal of a stiffness, as a function of the edges.
@@ -60,6 +88,8 @@ pub(crate) type ForcesAndInvariants<R> = (Mat3<R>, [R; 3]);
 /// It is asked for the number of all tetrahedra of a batch after their forces: with a root at the end of a chain of thirty operations, processors do
 /// not look far enough ahead to do anything else meanwhile.
 pub(crate) trait Measured<T: Scalar>: Sync {
+    /// As [`Element::IS_SHARING`].
+    const IS_SHARING: bool;
     /// As [`Element::prefetch`].
     fn prefetch(&self, slot: usize);
     /// Those of the tetrahedra of a slot.
@@ -68,6 +98,7 @@ pub(crate) trait Measured<T: Scalar>: Sync {
         part: Part<S>,
         slot: usize,
         edges: &Mat3<T::Lanes<S>>,
+        shared: &Shared<T::Lanes<S>>,
     ) -> ForcesAndInvariants<T::Lanes<S>>;
     /// The number that comes from the three.
     fn measure<S: Simd>(&self, part: Part<S>, slot: usize, invariants: &[T::Lanes<S>; 3]) -> T::Lanes<S>;

@@ -1,6 +1,6 @@
 use super::batch::Batch;
 use super::deal::{deal, halves_share_no_node};
-use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record, Shared};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Keep, Largest, Scatter, ScatterAndMeasure, ScatterBlocks, Visitor, starts};
 use super::{PatchRows, Patches, PerPatch, clear, no_rows};
@@ -166,14 +166,14 @@ impl TetFans {
         element: &E,
         Sums { executor, rows }: Sums<'_, T>,
     ) -> &Patches {
-        let rows = &mut rows[..self.patches.rows()];
-        self.patches.each(executor, rows, 1, &|patch, rows| {
-            let ([sums], _) = rows.as_chunks_mut() else { return };
-            let mut places = no_rows::<T, FIELDS>();
+        let data = self.patches.per_patch(&mut rows[..self.patches.rows()], 1);
+        let work = |patch: usize, rows: PerPatch<'_, [T; 4]>, places: &mut [PatchRows<T>; FIELDS]| {
+            let ([sums], _) = rows.values.as_chunks_mut() else { return };
             clear(&mut sums[..self.patches.nodes(patch).len()]);
-            self.patches.gather(patch, &fields, &mut places);
+            self.patches.gather(patch, &fields, places);
             self.scatter(patch, places.each_ref(), element, sums);
-        });
+        };
+        executor.each_with(&no_rows, self.patches.count(), data, &work);
         &self.patches
     }
 
@@ -185,14 +185,13 @@ impl TetFans {
         Sums { executor, rows }: Sums<'_, T>,
     ) -> (&Patches, T) {
         let data = self.patches.per_patch(&mut rows[..self.patches.rows()], 1);
-        let work = |patch: usize, rows: PerPatch<'_, [T; 4]>| {
+        let work = |patch: usize, rows: PerPatch<'_, [T; 4]>, places: &mut [PatchRows<T>; 1]| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return T::ZERO };
-            let mut places = no_rows::<T, 1>();
             clear(&mut sums[..self.patches.nodes(patch).len()]);
-            self.patches.gather(patch, &[x], &mut places);
+            self.patches.gather(patch, &[x], places);
             dispatch!(dispatch_level(), simd => self.scatter_and_measure(simd, patch, &places[0], element, sums))
         };
-        let largest = executor.fold(self.patches.count(), data, &work, &Real::max);
+        let largest = executor.fold_with(&no_rows, self.patches.count(), data, &work, &Real::max);
         (&self.patches, largest.unwrap_or(T::ZERO))
     }
 
@@ -226,22 +225,27 @@ impl TetFans {
         let per_patch = |rows| self.patches.per_patch(rows, 1);
         let inertia = self.patches.per_patch(&mut inertia.as_flattened_mut()[..count], 1);
         let data = ((per_patch(sums), per_patch(directions)), inertia);
-        let work = |patch: usize, ((sums, directions), inertia): ProductRows<'_, T>| {
+        let memory = || (FIELDS > 1).then(no_rows::<T, 1>);
+        let work = |patch: usize,
+                    ((sums, directions), inertia): ProductRows<'_, T>,
+                    places: &mut Option<[PatchRows<T>; 1]>| {
             let (([sums], _), ([direction], _)) = (sums.values.as_chunks_mut(), directions.values.as_chunks_mut())
             else {
                 return 0.0;
             };
             self.patches.turn(patch, turn, masses, ([sums, direction], inertia.values));
-            let mut places = no_rows::<T, 1>();
-            if FIELDS > 1 {
-                self.patches.gather(patch, &[x], &mut places);
+            if let Some(places) = places {
+                self.patches.gather(patch, &[x], places);
             }
-            let direction = &*direction;
-            let fields = std::array::from_fn(|field| if field + 1 == FIELDS { direction } else { &places[0] });
+            let (direction, places) = (&*direction, places.as_ref());
+            let fields = std::array::from_fn(|field| match places {
+                Some(places) if field + 1 < FIELDS => &places[0],
+                _ => direction,
+            });
             self.scatter(patch, fields, element, sums);
             self.patches.curvature(patch, direction, sums)
         };
-        let curvature = executor.fold(self.patches.count(), data, &work, &|a, b| a + b);
+        let curvature = executor.fold_with(&memory, self.patches.count(), data, &work, &|a, b| a + b);
         (&self.patches, curvature.unwrap_or(0.0))
     }
 
@@ -322,14 +326,14 @@ impl TetFans {
         let block = record.columns() * T::LANES;
         let table = PerPatch { values: table, starts: &self.slot_starts, width: block };
         let data = (table, self.patches.per_patch(&mut rows[..self.patches.rows()], 1));
-        executor.each(self.patches.count(), data, &|patch, (table, rows): (PerPatch<'_, T>, PerPatch<'_, [T; 4]>)| {
+        let work = |patch: usize, (table, rows): RecordRows<'_, T>, places: &mut [PatchRows<T>; 1]| {
             let ([sums], _) = rows.values.as_chunks_mut() else { return };
-            let mut places = no_rows::<T, 1>();
             clear(&mut sums[..self.patches.nodes(patch).len()]);
-            self.patches.gather(patch, &[x], &mut places);
+            self.patches.gather(patch, &[x], places);
             let values = (table.values, block);
             dispatch!(dispatch_level(), simd => self.scatter_and_keep(simd, patch, &places[0], (record, values), sums));
-        });
+        };
+        executor.each_with(&no_rows, self.patches.count(), data, &work);
         &self.patches
     }
 
@@ -352,12 +356,11 @@ impl TetFans {
 
     /// The largest of what `measure` says of each tetrahedron at `x`, and 0 if there is none above.
     pub(crate) fn largest<T: Scalar>(&self, x: &[Vec3<T>], measure: &impl Measure<T>, executor: &Executor) -> T {
-        let work = |patch: usize, (): ()| {
-            let mut places = no_rows();
-            self.patches.gather(patch, &[x], &mut places);
+        let work = |patch: usize, (): (), places: &mut [PatchRows<T>; 1]| {
+            self.patches.gather(patch, &[x], places);
             dispatch!(dispatch_level(), simd => self.largest_of(simd, patch, &places[0], measure))
         };
-        executor.fold(self.patches.count(), (), &work, &Real::max).unwrap_or(T::ZERO)
+        executor.fold_with(&no_rows, self.patches.count(), (), &work, &Real::max).unwrap_or(T::ZERO)
     }
 
     #[inline(always)]
@@ -378,15 +381,16 @@ impl TetFans {
     /// All nodes of a batch are read, then its tetrahedra visited, then sums written: tetrahedra do not wait for one another, and each part
     /// has the registers for itself (forces a tenth faster where there are sixteen, measured).
     #[inline(always)]
-    fn walk<T: Scalar, S: Simd, const FIELDS: usize>(
+    fn walk<T: Scalar, S: Simd, V: Visitor<T, S, FIELDS>, const FIELDS: usize>(
         &self,
         simd: S,
         patch: usize,
         fields: [&PatchRows<T>; FIELDS],
-        visitor: &mut impl Visitor<T, S, FIELDS>,
+        visitor: &mut V,
     ) {
         let zero = Vec3::splat(T::Lanes::<S>::splat(simd, T::ZERO));
         let mut ring = [[zero; FIELDS]; LONGEST + 1];
+        let mut faces = [zero; LONGEST + 1];
         for batch in &self.batches[self.batch_starts[patch]..self.batch_starts[patch + 1]] {
             let nodes = &self.nodes[batch.nodes..batch.nodes + (2 + batch.ring()) * T::LANES];
             let (origin, nodes) = nodes.split_at(T::LANES);
@@ -405,18 +409,23 @@ impl TetFans {
             for part in Part::all::<T>(simd).take_while(|part| part.start::<T, T::Lanes<S>>() < batch.fans) {
                 let at_origin = gather(part, fields, origin);
                 let axis = minus(gather(part, fields, end), &at_origin);
-                for (place, nodes) in ring.iter_mut().zip(nodes.chunks_exact(T::LANES)) {
+                let axis_square = if V::IS_SHARING { axis[0].squared_norm() } else { zero.x };
+                for ((place, face), nodes) in ring.iter_mut().zip(&mut faces).zip(nodes.chunks_exact(T::LANES)) {
                     *place = minus(gather(part, fields, nodes), &at_origin);
+                    if V::IS_SHARING {
+                        *face = axis[0].cross(place[0]);
+                    }
                 }
                 let length = batch.length.min(LONGEST);
                 if batch.is_closed {
-                    ring[length] = ring[0];
+                    (ring[length], faces[length]) = (ring[0], faces[0]);
                 }
                 for place in 0..length {
                     let edges = std::array::from_fn(|field| {
                         Mat3::from_columns(axis[field], ring[place][field], ring[place + 1][field])
                     });
-                    visitor.tetrahedron(part, batch.slot + place, place, &edges);
+                    let shared = Shared { axis_square, from: faces[place], to: faces[place + 1] };
+                    visitor.tetrahedron(part, batch.slot + place, place, &edges, &shared);
                 }
                 visitor.end(part, &batch_nodes);
             }
@@ -426,6 +435,9 @@ impl TetFans {
 
 /// Sums, direction and masses of a product on the copies of the nodes.
 type ProductRows<'a, T> = ((PerPatch<'a, [T; 4]>, PerPatch<'a, [T; 4]>), PerPatch<'a, T>);
+
+/// What is kept of tetrahedra, and sums on the copies of the nodes.
+type RecordRows<'a, T> = (PerPatch<'a, T>, PerPatch<'a, [T; 4]>);
 
 #[inline(always)]
 fn largest_lane<T: Scalar, S: Simd>(simd: S, value: T::Lanes<S>) -> T {

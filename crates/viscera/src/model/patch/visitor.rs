@@ -1,6 +1,6 @@
 //! What loops do along the fans of a patch: add up forces or blocks, keep numbers, look for the largest.
 
-use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record};
+use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record, Shared};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
@@ -8,8 +8,17 @@ use crate::model::lane_vector::{self, Kept, take_up};
 
 /// Whoever is led along the fans, a batch at a time.
 pub(super) trait Visitor<T: Scalar, S: Simd, const FIELDS: usize> {
+    /// Whether it asks for what tetrahedra share.
+    const IS_SHARING: bool = false;
     /// The tetrahedra of a slot, in this `place` of their fans.
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]);
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        place: usize,
+        edges: &[Mat3<T::Lanes<S>>; FIELDS],
+        shared: &Shared<T::Lanes<S>>,
+    );
     /// All tetrahedra of the batch have been visited.
     #[inline(always)]
     fn end(&mut self, _part: Part<S>, _nodes: &BatchNodes<'_>) {}
@@ -59,12 +68,21 @@ pub(super) struct Scatter<'a, T: Scalar, E> {
 }
 
 impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, S, FIELDS> for Scatter<'_, T, E> {
+    const IS_SHARING: bool = E::IS_SHARING;
+
     #[inline(always)]
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) {
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        place: usize,
+        edges: &[Mat3<T::Lanes<S>>; FIELDS],
+        shared: &Shared<T::Lanes<S>>,
+    ) {
         if part.is_first() {
             self.element.prefetch(slot + AHEAD);
         }
-        keep::<T, S>(part.simd, self.element.forces(part, slot, edges), &mut self.forces[place]);
+        keep::<T, S>(part.simd, self.element.forces(part, slot, edges, shared), &mut self.forces[place]);
     }
 
     #[inline(always)]
@@ -85,13 +103,22 @@ pub(super) struct ScatterAndMeasure<'a, T: Scalar, S: Simd, E> {
 }
 
 impl<T: Scalar, S: Simd, E: Measured<T>> Visitor<T, S, 1> for ScatterAndMeasure<'_, T, S, E> {
+    const IS_SHARING: bool = E::IS_SHARING;
+
     #[inline(always)]
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        place: usize,
+        edges: &[Mat3<T::Lanes<S>>; 1],
+        shared: &Shared<T::Lanes<S>>,
+    ) {
         if part.is_first() {
             self.element.prefetch(slot + AHEAD);
         }
         self.batch = (slot - place, place + 1);
-        let (forces, invariants) = self.element.forces_and_invariants(part, slot, &edges[0]);
+        let (forces, invariants) = self.element.forces_and_invariants(part, slot, &edges[0], shared);
         self.invariants[place] = invariants;
         keep::<T, S>(part.simd, forces, &mut self.forces[place]);
     }
@@ -184,7 +211,14 @@ pub(super) struct Keep<'a, T: Scalar, S: Simd, R> {
 
 impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
     #[inline(always)]
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        place: usize,
+        edges: &[Mat3<T::Lanes<S>>; 1],
+        _shared: &Shared<T::Lanes<S>>,
+    ) {
         self.batch = (slot - place, place + 1);
         self.places[place].edges = edges[0];
         self.places[place].f = self.record.deformation(part, slot, &edges[0]);
@@ -214,7 +248,14 @@ pub(super) struct ScatterBlocks<'a, T: Scalar, E> {
 
 impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, T, E> {
     #[inline(always)]
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        place: usize,
+        edges: &[Mat3<T::Lanes<S>>; 1],
+        _shared: &Shared<T::Lanes<S>>,
+    ) {
         let blocks = self.element.blocks(part, slot, &edges[0]);
         let kept = &mut self.blocks[place];
         for corner in 0..4 {
@@ -306,7 +347,14 @@ pub(super) struct Largest<'a, M, V> {
 
 impl<T: Scalar, S: Simd, M: Measure<T>> Visitor<T, S, 1> for Largest<'_, M, T::Lanes<S>> {
     #[inline(always)]
-    fn tetrahedron(&mut self, part: Part<S>, slot: usize, _place: usize, edges: &[Mat3<T::Lanes<S>>; 1]) {
+    fn tetrahedron(
+        &mut self,
+        part: Part<S>,
+        slot: usize,
+        _place: usize,
+        edges: &[Mat3<T::Lanes<S>>; 1],
+        _shared: &Shared<T::Lanes<S>>,
+    ) {
         self.value = self.value.max(self.measure.measure(part, slot, &edges[0]));
     }
 }

@@ -19,7 +19,7 @@ use super::orthogonal::{self, at_corners, columns_at_corners, lower, squares};
 use crate::material::{Fibre, RestStiffness, StVenantKirchhoff};
 use crate::math::{Mat3, Real, Scalar, Sym3, Vec3};
 
-/// Constants: L (yx, zx, zy), qδ (x, y, z), q = √(Vμ), r = λ/2μ.
+/// Constants: L (zy, xy, xz), qδ (x, y, z), q = √(Vμ), r = λ/2μ.
 #[derive(Clone, Debug)]
 pub(super) struct StVenantKirchhoffMetric;
 
@@ -202,7 +202,7 @@ impl BoundedKernel for StVenantKirchhoffMetric {
     }
 
     #[inline(always)]
-    fn stiffness_bound<R: Real>(c: &[R], invariants: &[R; 3]) -> R {
+    fn stiffness_bound<R: Real>(c: &[R], _: &[R], invariants: &[R; 3]) -> R {
         isotropic_bound(c, invariants[0], stretch_bound(invariants))
     }
 }
@@ -260,7 +260,7 @@ impl BoundedKernel for TransverseMetric {
     }
 
     #[inline(always)]
-    fn stiffness_bound<R: Real>(c: &[R], invariants: &[R; 3]) -> R {
+    fn stiffness_bound<R: Real>(c: &[R], _: &[R], invariants: &[R; 3]) -> R {
         let stretch = stretch_bound(invariants);
         isotropic_bound(c, invariants[0], stretch) + Fibre::bound_of(c[11], stretch, c[6] * invariants[2])
     }
