@@ -229,15 +229,20 @@ struct Product<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 struct Mean<'a, T: Scalar, K>(&'a TetLoop<T, K>);
 
 impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
-    const IS_SHARING: bool = K::IS_SHARING;
-
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
         self.0.prefetch(slot);
     }
 
     #[inline(always)]
-    fn forces<S: Simd>(
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
+        K::forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0])
+    }
+
+    const IS_SHARING: bool = K::IS_SHARING;
+
+    #[inline(always)]
+    fn forces_in_fan<S: Simd>(
         &self,
         part: Part<S>,
         slot: usize,
@@ -250,13 +255,7 @@ impl<T: Scalar, K: TetKernel> Element<T, 1> for Forces<'_, T, K> {
 
 impl<T: Scalar, K: TetKernel> Element<T, 2> for Product<'_, T, K> {
     #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        part: Part<S>,
-        slot: usize,
-        edges: &[Mat3<T::Lanes<S>>; 2],
-        _shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
         K::product(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }
@@ -265,13 +264,7 @@ impl<T: Scalar, K: TetKernel> Element<T, 2> for Mean<'_, T, K> {
     const IS_WIDE: bool = false;
 
     #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        part: Part<S>,
-        slot: usize,
-        edges: &[Mat3<T::Lanes<S>>; 2],
-        _shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
         K::mean_forces(&self.0.load(part, slot)[..K::CONSTANTS], &edges[0], &edges[1])
     }
 }

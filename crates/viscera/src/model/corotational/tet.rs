@@ -13,7 +13,7 @@ use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
 use crate::model::lane_vector::{load, store};
-use crate::model::patch::{Deformed, Diagonal, Element, Record, Shared, TetFans};
+use crate::model::patch::{Deformed, Diagonal, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Patches, Scratch};
 use crate::solver::Turn;
@@ -241,13 +241,7 @@ struct Turning<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 
 impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
     #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        part: Part<S>,
-        slot: usize,
-        edges: &[Mat3<T::Lanes<S>>; 1],
-        _shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
             (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
         let f = edges[0] * inverse;
@@ -258,13 +252,7 @@ impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
 
 impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        part: Part<S>,
-        slot: usize,
-        edges: &[Mat3<T::Lanes<S>>; 2],
-        _shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
         let (Batch { inverse, volume, hooke }, formulation) =
             (self.tets.load::<S, false>(part, slot), self.formulation);
         let (f, df) = (edges[0] * inverse, edges[1] * inverse);
@@ -300,13 +288,7 @@ impl<T: Scalar, const FIBRED: bool> Element<T, 1> for FrozenProduct<'_, T, FIBRE
     }
 
     #[inline(always)]
-    fn forces<S: Simd>(
-        &self,
-        part: Part<S>,
-        slot: usize,
-        edges: &[Mat3<T::Lanes<S>>; 1],
-        _shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>> {
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
         let turned = self.load(part, slot);
         turned.forces(&(edges[0] * turned.gradients.transpose()))
     }

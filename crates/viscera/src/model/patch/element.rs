@@ -8,16 +8,21 @@ pub(crate) trait Element<T: Scalar, const FIELDS: usize>: Sync {
     const IS_WIDE: bool = true;
     /// Asks for the numbers of a slot that the loop will come to, if there is one.
     fn prefetch(&self, _slot: usize) {}
-    /// Whether it asks for what tetrahedra share along a fan, of the first of the arrays.
-    const IS_SHARING: bool = false;
     /// Forces on the corners 1, 2, 3 of the tetrahedra of a slot; that on corner 0 is minus their sum.
-    fn forces<S: Simd>(
+    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; FIELDS]) -> Mat3<T::Lanes<S>>;
+    /// Whether [`Element::forces_in_fan`] makes use of what tetrahedra share.
+    const IS_SHARING: bool = false;
+    /// The same with what the tetrahedra of a fan share, in the first of the arrays.
+    #[inline(always)]
+    fn forces_in_fan<S: Simd>(
         &self,
         part: Part<S>,
         slot: usize,
         edges: &[Mat3<T::Lanes<S>>; FIELDS],
-        shared: &Shared<T::Lanes<S>>,
-    ) -> Mat3<T::Lanes<S>>;
+        _shared: &Shared<T::Lanes<S>>,
+    ) -> Mat3<T::Lanes<S>> {
+        self.forces(part, slot, edges)
+    }
 }
 
 /// What the tetrahedra of a fan share: with the edges x (the axis), y and z of one, x is that of all, and z is y of the next.

@@ -82,7 +82,7 @@ impl<T: Scalar, S: Simd, E: Element<T, FIELDS>, const FIELDS: usize> Visitor<T, 
         if part.is_first() {
             self.element.prefetch(slot + AHEAD);
         }
-        keep::<T, S>(part.simd, self.element.forces(part, slot, edges, shared), &mut self.forces[place]);
+        keep::<T, S>(part.simd, self.element.forces_in_fan(part, slot, edges, shared), &mut self.forces[place]);
     }
 
     #[inline(always)]
