@@ -12,8 +12,8 @@ use fearless_simd::{f32x8, f32x16, f64x4, f64x8};
 
 use super::Real;
 use super::rows::{
-    add_doubles, add_singles, add_wide_doubles, add_wide_singles, gather_doubles, gather_singles, gather_wide_doubles,
-    gather_wide_singles,
+    add_doubles, add_singles, add_wide_doubles, add_wide_singles, doubles_of, gather_doubles, gather_singles,
+    gather_wide_doubles, gather_wide_singles, singles_of, wide_doubles_of, wide_singles_of,
 };
 
 /// An instruction set, and the batches that its registers hold.
@@ -139,6 +139,8 @@ pub trait Lanes<T: Scalar, S: Simd>: Real {
     /// Rows are loaded whole and transposed in registers: single loads into an array, read back as one vector,
     /// stall on store forwarding (three times slower, measured).
     fn gather_from(simd: S, rows: &[T], start: impl Fn(usize) -> usize + Copy) -> [Self; 4];
+    /// Rows of four numbers side by side, as many as there are lanes for.
+    fn rows_of(simd: S, row: impl Fn(usize) -> [T; 4] + Copy) -> Self;
     /// Adds three numbers per lane, lane `i` to those from `rows[start(i)]` on, lane after lane: lanes may name the same row.
     fn scatter_add_from(columns: [Self; 3], start: impl Fn(usize) -> usize + Copy, rows: &mut [T]);
     /// [`Lanes::gather_from`] of whole rows, lane `i` from `rows[nodes[i]]`.
@@ -195,7 +197,7 @@ impl_scalar!(f32, Singles, f32x8, 16, "f32");
 impl_scalar!(f64, Doubles, f64x4, 8, "f64");
 
 macro_rules! impl_lanes {
-    ($scalar:ty, $lanes:ident, $count:expr, $gather:path, $add:path) => {
+    ($scalar:ty, $lanes:ident, $count:expr, $gather:path, $add:path, $rows:path) => {
         impl<S: Simd> Lanes<$scalar, S> for $lanes<S> {
             const COUNT: usize = $count;
 
@@ -214,6 +216,10 @@ macro_rules! impl_lanes {
             #[inline(always)]
             fn gather_from(simd: S, rows: &[$scalar], start: impl Fn(usize) -> usize + Copy) -> [Self; 4] {
                 $gather(simd, rows, start)
+            }
+            #[inline(always)]
+            fn rows_of(simd: S, row: impl Fn(usize) -> [$scalar; 4] + Copy) -> Self {
+                $rows(simd, row)
             }
             #[inline(always)]
             fn scatter_add_from(columns: [Self; 3], start: impl Fn(usize) -> usize + Copy, rows: &mut [$scalar]) {
@@ -282,10 +288,10 @@ macro_rules! impl_lanes {
     };
 }
 
-impl_lanes!(f32, f32x8, 8, gather_singles, add_singles);
-impl_lanes!(f32, f32x16, 16, gather_wide_singles, add_wide_singles);
-impl_lanes!(f64, f64x4, 4, gather_doubles, add_doubles);
-impl_lanes!(f64, f64x8, 8, gather_wide_doubles, add_wide_doubles);
+impl_lanes!(f32, f32x8, 8, gather_singles, add_singles, singles_of);
+impl_lanes!(f32, f32x16, 16, gather_wide_singles, add_wide_singles, wide_singles_of);
+impl_lanes!(f64, f64x4, 4, gather_doubles, add_doubles, doubles_of);
+impl_lanes!(f64, f64x8, 8, gather_wide_doubles, add_wide_doubles, wide_doubles_of);
 
 /// Rows of the longest block of any scalar.
 pub const MAX_LANES: usize = 16;

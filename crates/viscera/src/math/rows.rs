@@ -124,6 +124,34 @@ pub(super) fn add_wide_doubles<S: Simd>([x, y, z]: [f64x8<S>; 3], start: impl St
     );
 }
 
+/// Two rows side by side.
+#[inline(always)]
+pub(super) fn singles_of<S: Simd>(simd: S, row: impl Fn(usize) -> [f32; 4] + Copy) -> f32x8<S> {
+    f32x4::from_slice(simd, &row(0)).combine(f32x4::from_slice(simd, &row(1)))
+}
+
+/// Four rows.
+#[inline(always)]
+pub(super) fn wide_singles_of<S: Simd>(simd: S, row: impl Fn(usize) -> [f32; 4] + Copy) -> f32x16<S> {
+    singles_of(simd, row).combine(singles_of(
+        simd,
+        #[inline(always)]
+        move |number| row(number + 2),
+    ))
+}
+
+/// One row.
+#[inline(always)]
+pub(super) fn doubles_of<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4] + Copy) -> f64x4<S> {
+    f64x4::from_slice(simd, &row(0))
+}
+
+/// Two rows.
+#[inline(always)]
+pub(super) fn wide_doubles_of<S: Simd>(simd: S, row: impl Fn(usize) -> [f64; 4] + Copy) -> f64x8<S> {
+    f64x4::from_slice(simd, &row(0)).combine(f64x4::from_slice(simd, &row(1)))
+}
+
 /// The rows of a lane and of the one four behind it.
 #[inline(always)]
 fn two_singles<S: Simd>(simd: S, rows: &[f32], start: impl Start, lane: usize) -> f32x8<S> {

@@ -273,6 +273,11 @@ impl<T: Scalar, K: TetKernel> Diagonal<T> for TetLoop<T, K> {
     const IS_WIDE: bool = K::HAS_DIAGONAL;
 
     #[inline(always)]
+    fn prefetch(&self, slot: usize) {
+        TetLoop::prefetch(self, slot);
+    }
+
+    #[inline(always)]
     fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
         K::diagonal(&self.load(part, slot)[..K::CONSTANTS], edges)
     }

@@ -22,6 +22,7 @@ mod hex;
 mod hex_linearized;
 mod hooke;
 mod tet;
+mod turned;
 mod warping;
 
 pub use warping::StiffnessWarping;

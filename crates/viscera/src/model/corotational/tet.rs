@@ -5,15 +5,15 @@ use std::sync::Arc;
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
 use super::hooke::{FIBRED, Hooke, ISOTROPIC};
+use super::turned::{self, FIBRE, FIBRE_RATIO, FrozenProduct, RATIO, Turned};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
-use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, prefetch};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::mesh::TetMesh;
 use crate::model::BlockSink;
 use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
 use crate::model::block_table::BlockTable;
-use crate::model::lane_vector::{load, store};
-use crate::model::patch::{Deformed, Diagonal, Element, Record, TetFans};
+use crate::model::patch::{Deformed, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Patches, Scratch};
 use crate::solver::Turn;
@@ -23,13 +23,6 @@ const SHAPE: usize = 10;
 const VOLUME: usize = 9;
 /// The most columns.
 const MOST: usize = SHAPE + FIBRED;
-
-/// Columns of a linearized element: three turned gradients and λ/μ, and where there are fibres their turned direction and 2κ/μ.
-const RATIO: usize = 9;
-const TURNED: usize = 10;
-const FIBRE: usize = 10;
-const FIBRE_RATIO: usize = 13;
-const TURNED_FIBRED: usize = 14;
 
 /// Corotational tetrahedra. For QR the rest shape is turned so that its own edges 01 and 02 lie along its first axes:
 /// what Gram–Schmidt finds in F then is Q Q0ᵀ, and nothing is left to do for Q0.
@@ -46,48 +39,6 @@ struct Batch<R> {
     inverse: Mat3<R>,
     volume: R,
     hooke: Hooke<R>,
-}
-
-/// √(s V μ) R A α of the corners 1, 2, 3 of a batch, and what is left of the law then: it is asked for σ/μ.
-struct Turned<R> {
-    gradients: Mat3<R>,
-    /// λ/μ.
-    ratio: R,
-    /// Turned direction and 2κ/μ.
-    fibre: Option<(Vec3<R>, R)>,
-}
-
-impl<R: Real> Turned<R> {
-    /// σ(sym e)/μ.
-    #[inline(always)]
-    fn stress(&self, e: &Mat3<R>) -> Sym3<R> {
-        let [a, b, c] = e.columns;
-        let (two, pressure) = (self.ratio.like(2.0), self.ratio * e.trace());
-        let stress = Sym3 {
-            xx: a.x.mul_add(two, pressure),
-            yy: b.y.mul_add(two, pressure),
-            zz: c.z.mul_add(two, pressure),
-            xy: a.y + b.x,
-            xz: a.z + c.x,
-            yz: b.z + c.y,
-        };
-        match self.fibre {
-            Some((direction, ratio)) => Sym3::square(direction).mul_add(ratio * direction.dot(*e * direction), stress),
-            None => stress,
-        }
-    }
-
-    /// The forces of a frame in which the edges make `e` of the gradients.
-    #[inline(always)]
-    fn forces(&self, e: &Mat3<R>) -> Mat3<R> {
-        Mat3::from(self.stress(e)) * self.gradients
-    }
-
-    /// The law of σ/μ.
-    #[inline(always)]
-    fn hooke(&self) -> Hooke<R> {
-        Hooke { lambda: self.ratio, mu: self.ratio.like(1.0), fibre: self.fibre }
-    }
 }
 
 impl<R: Real> Batch<R> {
@@ -128,7 +79,7 @@ impl<T: Scalar> CorotationalTets<T> {
     }
 
     fn linearized_columns(&self) -> usize {
-        if self.fibred { TURNED_FIBRED } else { TURNED }
+        turned::columns(self.fibred)
     }
 
     #[inline(always)]
@@ -233,9 +184,6 @@ struct Derivative<'a, T: Scalar> {
     tets: &'a CorotationalTets<T>,
     formulation: Formulation,
 }
-/// The derivative with the rotations held, from turned gradients. Tissue without fibres has a kernel of its own, whose registers
-/// suffice: with both in one a product took a fifth longer.
-struct FrozenProduct<'a, T: Scalar, const FIBRED: bool>(&'a [T]);
 /// Turns the gradients, and finds the forces by them.
 struct Turning<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 
@@ -263,50 +211,14 @@ impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     }
 }
 
-impl<T: Scalar, const FIBRED: bool> FrozenProduct<'_, T, FIBRED> {
-    #[inline(always)]
-    fn load<S: Simd>(&self, part: Part<S>, slot: usize) -> Turned<T::Lanes<S>> {
-        let len = T::LANES * if FIBRED { TURNED_FIBRED } else { TURNED };
-        let row = &self.0[slot * len..][..len];
-        let number = |column: usize| T::Lanes::<S>::load(part, &row[column * T::LANES..]);
-        let gradients =
-            Mat3::from_columns(load(part, row), load(part, &row[3 * T::LANES..]), load(part, &row[6 * T::LANES..]));
-        let fibre = if FIBRED { Some((load(part, &row[FIBRE * T::LANES..]), number(FIBRE_RATIO))) } else { None };
-        Turned { gradients, ratio: number(RATIO), fibre }
-    }
-}
-
-// 117 flops for an isotropic law: 9 for dD, 45 for dD gᵀ, 12 for the stress, 45 for its products, 6 for corner 0. Benches count the 129 of a law with
-// λ and μ apart.
-impl<T: Scalar, const FIBRED: bool> Element<T, 1> for FrozenProduct<'_, T, FIBRED> {
-    #[inline(always)]
-    fn prefetch(&self, slot: usize) {
-        let len = T::LANES * if FIBRED { TURNED_FIBRED } else { TURNED };
-        if let Some(row) = self.0.get(slot * len..(slot + 1) * len) {
-            prefetch(row);
-        }
-    }
-
-    #[inline(always)]
-    fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let turned = self.load(part, slot);
-        turned.forces(&(edges[0] * turned.gradients.transpose()))
-    }
-}
-
-impl<T: Scalar, const FIBRED: bool> Diagonal<T> for FrozenProduct<'_, T, FIBRED> {
-    #[inline(always)]
-    fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, _edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4] {
-        let turned = self.load(part, slot);
-        let hooke = turned.hooke();
-        let [b, c, d] = turned.gradients.columns;
-        [hooke.own_block(-(b + c + d)), hooke.own_block(b), hooke.own_block(c), hooke.own_block(d)]
-    }
-}
-
 impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
     fn columns(&self) -> usize {
         self.0.linearized_columns()
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, slot: usize) {
+        self.0.constants.prefetch(T::LANES, self.0.columns(), slot);
     }
 
     #[inline(always)]
@@ -337,14 +249,7 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
             ratio: hooke.lambda / hooke.mu,
             fibre: hooke.fibre.map(|(direction, stiffness)| (r * direction, stiffness / hooke.mu)),
         };
-        for i in 0..3 {
-            store(part, turned.gradients.columns[i], &mut row[3 * i * T::LANES..]);
-        }
-        turned.ratio.store(part, &mut row[RATIO * T::LANES..]);
-        if let Some((direction, ratio)) = turned.fibre {
-            store(part, direction, &mut row[FIBRE * T::LANES..]);
-            ratio.store(part, &mut row[FIBRE_RATIO * T::LANES..]);
-        }
+        turned.store::<T, S>(part, row);
         if formulation.is_linear_in_its_frame() {
             turned.forces(&(edges * turned.gradients.transpose() - Mat3::diagonal(root)))
         } else {

@@ -49,6 +49,8 @@ impl<R: Real> Shared<R> {
 pub(crate) trait Diagonal<T: Scalar>: Sync {
     /// Whether it is worth compiling for each instruction set.
     const IS_WIDE: bool = true;
+    /// As [`Element::prefetch`].
+    fn prefetch(&self, _slot: usize) {}
     /// The blocks of the four corners of the tetrahedra of a slot.
     fn blocks<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> [Sym3<T::Lanes<S>>; 4];
 }
@@ -60,6 +62,8 @@ pub(crate) trait Diagonal<T: Scalar>: Sync {
 pub(crate) trait Record<T: Scalar>: Sync {
     /// How many numbers it keeps of each.
     fn columns(&self) -> usize;
+    /// As [`Element::prefetch`].
+    fn prefetch(&self, slot: usize);
     /// The deformation gradients F of the tetrahedra of a slot.
     fn deformation<S: Simd>(&self, part: Part<S>, slot: usize, edges: &Mat3<T::Lanes<S>>) -> Mat3<T::Lanes<S>>;
     /// Their rotations R.

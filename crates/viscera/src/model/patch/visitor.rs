@@ -3,7 +3,7 @@
 use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record, Shared};
 use super::fan::LONGEST;
 use super::{PATCH_NODES, PatchRows};
-use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3};
+use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, prefetch};
 use crate::model::lane_vector::{self, Kept, take_up};
 
 /// Whoever is led along the fans, a batch at a time.
@@ -209,6 +209,18 @@ pub(super) struct Keep<'a, T: Scalar, S: Simd, R> {
     pub(super) forces: KeptVectors<T, 3>,
 }
 
+impl<T: Scalar, S: Simd, R: Record<T>> Keep<'_, T, S, R> {
+    /// What is read of a slot, and what will be written: a line is fetched before a part of it is overwritten.
+    #[inline(always)]
+    fn prefetch(&self, slot: usize) {
+        self.record.prefetch(slot);
+        let start = (slot - self.first) * self.block;
+        if let Some(block) = self.values.get(start..start + self.block) {
+            prefetch(block);
+        }
+    }
+}
+
 impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
     #[inline(always)]
     fn tetrahedron(
@@ -219,6 +231,9 @@ impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
         edges: &[Mat3<T::Lanes<S>>; 1],
         _shared: &Shared<T::Lanes<S>>,
     ) {
+        if part.is_first() {
+            self.prefetch(slot + AHEAD);
+        }
         self.batch = (slot - place, place + 1);
         self.places[place].edges = edges[0];
         self.places[place].f = self.record.deformation(part, slot, &edges[0]);
@@ -256,6 +271,9 @@ impl<T: Scalar, S: Simd, E: Diagonal<T>> Visitor<T, S, 1> for ScatterBlocks<'_, 
         edges: &[Mat3<T::Lanes<S>>; 1],
         _shared: &Shared<T::Lanes<S>>,
     ) {
+        if part.is_first() {
+            self.element.prefetch(slot + AHEAD);
+        }
         let blocks = self.element.blocks(part, slot, &edges[0]);
         let kept = &mut self.blocks[place];
         for corner in 0..4 {
