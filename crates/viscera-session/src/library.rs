@@ -49,9 +49,11 @@ pub fn recordings() -> impl Iterator<Item = (&'static str, &'static [u8])> {
     })
 }
 
-/// The files that built-in scenes name.
+/// The files that built-in scenes name. Recordings take them along.
 pub fn files() -> Files {
-    let named = FILES.iter().filter(|(path, _)| !path.ends_with(".toml") && !path.starts_with("recordings/"));
+    let is_named =
+        |path: &str| !path.starts_with("recordings/") && !path.ends_with(".toml") && !path.ends_with(".json");
+    let named = FILES.iter().filter(|(path, _)| is_named(path));
     let named: BTreeMap<String, Vec<u8>> = named.map(|(path, bytes)| ((*path).into(), bytes.to_vec())).collect();
     Files::Memory(Arc::new(named))
 }
@@ -71,6 +73,15 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+
+    #[test]
+    fn a_file_that_goes_with_the_scenes_is_named_by_one() {
+        let Files::Memory(files) = files() else { panic!("they are built in") };
+        assert!(!files.is_empty());
+        for name in files.keys() {
+            assert!(scenes().any(|(_, text)| text.contains(name)), "no scene names {name}");
+        }
+    }
 
     #[test]
     fn every_file_of_the_scenes_folder_is_built_in() {
