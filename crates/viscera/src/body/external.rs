@@ -2,7 +2,7 @@
 
 use super::{Actuators, Drivers, NodalLoads, SimulatedBody};
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Mat3, Scalar, Vec3, dispatch, dispatch_level};
 use crate::model::BlockSink;
 use crate::solver::Reach;
 
@@ -11,9 +11,8 @@ impl<T: Scalar> SimulatedBody<T> {
     pub(crate) fn update_external_forces(&mut self, time: f64, gravity: Vec3<T>) {
         let masses = &self.state.masses;
         let work = |block: usize, NodeBlocks(forces): NodeBlocks<'_, Vec3<T>>| {
-            for (force, &mass) in forces.iter_mut().zip(&masses[block * NODE_BLOCK..]) {
-                *force = gravity * mass;
-            }
+            let masses = &masses[block * NODE_BLOCK..];
+            dispatch!(dispatch_level(), _simd => forces.iter_mut().zip(masses).for_each(|(force, &mass)| *force = gravity * mass));
         };
         self.scratch.executor.each(node_blocks(masses.len()), NodeBlocks(&mut self.external_forces), &work);
         self.loads.add(time, &self.state.positions, &self.state.removed, &mut self.external_forces);

@@ -41,13 +41,24 @@ impl<T: Scalar> SimulatedBody<T> {
         if self.state.forces_are_current && self.is_linearized {
             return;
         }
-        let state = &mut self.state;
-        state.internal_forces.fill(Vec3::ZERO);
-        for model in &state.models {
-            let keeps = model.linearization_len() > 0;
-            stages.run(if keeps { Stage::Linearisation } else { Stage::Forces(model.name()) }, || {
-                model.linearize_and_add_forces(&state.positions, &mut self.scratch, &mut state.internal_forces);
-            });
+        let (state, scratch) = (&mut self.state, &mut self.scratch);
+        let (x, out) = (&state.positions, &mut state.internal_forces);
+        let stage = |model: &dyn ForceModel<T>| {
+            if model.linearization_len() > 0 { Stage::Linearisation } else { Stage::Forces(model.name()) }
+        };
+        let alone = if let [model] = &state.models[..] { Some(model) } else { None };
+        let written = alone.and_then(|model| {
+            stages.run(stage(model.as_ref()), || {
+                let patches = model.linearize_and_sum_forces(x, scratch)?;
+                scratch.write_sums(patches, out);
+                Some(())
+            })
+        });
+        if written.is_none() {
+            out.fill(Vec3::ZERO);
+            for model in &state.models {
+                stages.run(stage(model.as_ref()), || model.linearize_and_add_forces(x, scratch, out));
+            }
         }
         (state.forces_are_current, self.is_linearized) = (true, true);
     }

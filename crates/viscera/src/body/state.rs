@@ -188,6 +188,8 @@ pub(crate) struct MotionBackup<T> {
     internal_forces: Vec<Vec3<T>>,
     motions: Vec<NodeMotion>,
     grips: Vec<Vec3<T>>,
+    /// Whether motions and grips were kept.
+    keeps_hold: bool,
     forces_are_current: bool,
     squared_frequency: Option<f64>,
     past: PastState<T>,
@@ -214,21 +216,23 @@ impl<T: Scalar> MotionBackup<T> {
         let vectors = || large_pages::room_for(state.positions.len());
         let (positions, velocities, internal_forces) = (vectors(), vectors(), vectors());
         let mut backup = Self { positions, velocities, internal_forces, ..Self::default() };
-        backup.keep(state, &Executor::serial());
+        backup.keep(state, true, &Executor::serial());
         backup
     }
 
-    /// Copies the motion of `state`.
-    pub(crate) fn keep(&mut self, state: &BodyState<T>, executor: &Executor) {
+    /// Copies the motion of `state`; how its nodes move, and where jaws hold them, only where that may change within a step.
+    pub(crate) fn keep(&mut self, state: &BodyState<T>, keeps_hold: bool, executor: &Executor) {
+        self.keeps_hold = keeps_hold;
+        if keeps_hold {
+            copy(onto(&mut self.motions, &state.motions));
+            copy(onto(&mut self.grips, &state.grips));
+        }
         let motion = (onto(&mut self.positions, &state.positions), onto(&mut self.velocities, &state.velocities));
-        let hold = (onto(&mut self.motions, &state.motions), onto(&mut self.grips, &state.grips));
         let forces = onto(&mut self.internal_forces, &state.internal_forces);
         let parts = node_blocks(state.positions.len());
-        executor.each(parts, ((motion, hold), forces), &|_, (((x, v), (motions, grips)), forces)| {
+        executor.each(parts, (motion, forces), &|_, ((x, v), forces)| {
             copy(x);
             copy(v);
-            copy(motions);
-            copy(grips);
             copy(forces);
         });
         self.forces_are_current = state.forces_are_current;
@@ -253,8 +257,10 @@ impl<T: Scalar> MotionBackup<T> {
         state.positions.clone_from(&self.positions);
         state.velocities.clone_from(&self.velocities);
         state.internal_forces.clone_from(&self.internal_forces);
-        state.motions.clone_from(&self.motions);
-        state.grips.clone_from(&self.grips);
+        if self.keeps_hold {
+            state.motions.clone_from(&self.motions);
+            state.grips.clone_from(&self.grips);
+        }
         state.forces_are_current = self.forces_are_current;
         state.squared_frequency = self.squared_frequency;
         state.past.copy_from(&self.past);

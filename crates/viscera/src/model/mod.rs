@@ -47,7 +47,7 @@ pub use volume_penalty::VolumePenalty;
 use self::frequency::FrequencyBound;
 use self::sections::{SectionScratch, SectionSums, add_rows, fill};
 use crate::executor::Executor;
-use crate::math::{Mat3, Scalar, Vec3, large_pages};
+use crate::math::{Mat3, Scalar, Sym3, Vec3, large_pages};
 use crate::solver::Turn;
 
 /// Nodal forces of a body, their energy and their derivative, at given node positions.
@@ -90,8 +90,17 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// [`ForceModel::linearize`] and [`ForceModel::add_forces`] together, for models to which that is less work than one after the other.
     fn linearize_and_add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        self.linearize(x, scratch);
-        self.add_forces(x, scratch, out);
+        if let Some(patches) = self.linearize_and_sum_forces(x, scratch) {
+            scratch.add_sums(patches, out);
+        } else {
+            self.linearize(x, scratch);
+            self.add_forces(x, scratch, out);
+        }
+    }
+
+    /// The same with the forces on copies of the nodes, as [`ForceModel::sum_forces`] leaves them.
+    fn linearize_and_sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        if self.linearization_len() == 0 { self.sum_forces(x, scratch) } else { None }
     }
 
     /// Adds K(x) dx [N], the derivative of the internal forces at `x` along `dx` [m], to `out`.
@@ -120,7 +129,15 @@ pub trait ForceModel<T: Scalar>: Send + Sync {
 
     /// Adds the blocks of K(x) on the diagonal [N/m], one for each node, to `out`.
     fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        self.add_blocks(x, scratch, &mut DiagonalSink(out));
+        match self.sum_diagonal(x, scratch) {
+            Some(patches) => patches.add_up_blocks(&scratch.executor, &scratch.sums, out),
+            None => self.add_blocks(x, scratch, &mut DiagonalSink(out)),
+        }
+    }
+
+    /// Sums them on copies of the nodes in `scratch`, as [`ForceModel::sum_forces`] does forces.
+    fn sum_diagonal(&self, _x: &[Vec3<T>], _scratch: &mut Scratch<T>) -> Option<&Patches> {
+        None
     }
 
     /// Forces for the energy–momentum step, where the model has them.
@@ -245,6 +262,11 @@ impl<T: Scalar> Scratch<T> {
     /// Writes those of a block of nodes.
     pub(crate) fn write_sums_of_block(&self, patches: &Patches, block: usize, out: &mut [Vec3<T>]) {
         patches.write_up_block(block, &self.sums, out);
+    }
+
+    /// Writes to each of a block of nodes the sum of what [`ForceModel::sum_diagonal`] left on its copies.
+    pub(crate) fn write_blocks_of_block(&self, patches: &Patches, block: usize, out: &mut [Sym3<T>]) {
+        patches.write_up_blocks(block, &self.sums, out);
     }
 
     /// `len` rows to sum in, and beside them what was kept for products; scratch made for the body's models has the room already.

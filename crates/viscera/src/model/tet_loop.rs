@@ -335,8 +335,8 @@ impl<T: Scalar, K: TetKernel> TetLoop<T, K> {
         }
     }
 
-    pub(crate) fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        self.order.add_diagonal(x, self, scratch.sums(self.sum_rows()).0, out);
+    pub(crate) fn sum_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> &Patches {
+        self.order.sum_diagonal(x, self, scratch.sums(self.sum_rows()).0)
     }
 
     /// Sum of the energies [J], element by element in double precision.

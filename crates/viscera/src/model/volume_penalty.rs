@@ -10,7 +10,7 @@
 
 use super::block_table::BlockTable;
 use super::tet_loop::{TetConstants, TetKernel, TetLoop};
-use super::{BlockSink, ForceModel, ModelError, Scratch};
+use super::{BlockSink, ForceModel, ModelError, Patches, Scratch};
 use crate::math::{Mat3, Real, Scalar, Vec3};
 use crate::mesh::TetMesh;
 
@@ -99,8 +99,8 @@ impl<T: Scalar> ForceModel<T> for VolumePenalty<T> {
         self.tets.add_blocks(x, sink);
     }
 
-    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        self.tets.add_diagonal(x, scratch, out);
+    fn sum_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        Some(self.tets.sum_diagonal(x, scratch))
     }
 
     fn energy(&self, x: &[Vec3<T>]) -> f64 {

@@ -7,8 +7,10 @@ use crate::solver::BlockSink;
 /// Block-Jacobi preconditioner: the inverses of the 3×3 blocks on the diagonal, one for each node.
 #[derive(Clone, Debug, Default)]
 pub struct BlockJacobi<T> {
-    /// The blocks of K.
+    /// The blocks of K that are added one by one.
     blocks: Vec<Mat3<T>>,
+    /// Traces of the blocks of K that were inverted.
+    traces: Vec<T>,
     /// Inverses of the blocks of the matrix: xx, yy, zz, xy, xz, yz of all nodes. One array for each, and the compiler makes
     /// whole registers of a plain loop (five times faster than blocks of eight nodes, measured).
     inverses: [Vec<T>; 6],
@@ -21,7 +23,7 @@ impl<T: Scalar> BlockJacobi<T> {
     /// Memory for `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         let inverses = std::array::from_fn(|_| vec![T::ZERO; nodes]);
-        Self { blocks: vec![Mat3::ZERO; nodes], inverses }
+        Self { blocks: vec![Mat3::ZERO; nodes], traces: vec![T::ZERO; nodes], inverses }
     }
 
     /// Clears the blocks before new ones are added.
@@ -39,12 +41,32 @@ impl<T: Scalar> BlockJacobi<T> {
     ///
     /// The `filters` go into the inverses, S P⁻¹ S, so that nothing across them counts.
     pub fn invert(&mut self, masses: &[T], filters: &[Filter<T>], executor: &Executor) {
+        let blocks = std::mem::take(&mut self.blocks);
+        let find = |block: usize, found: &mut [Sym3<T>]| {
+            let added = &blocks[block * NODE_BLOCK..];
+            found.iter_mut().zip(added).for_each(|(found, block)| *found = block.symmetric_part());
+        };
+        self.invert_found(&find, masses, filters, executor);
+        self.blocks = blocks;
+    }
+
+    /// The same with the blocks of K that `find` writes, for a block of nodes as loops over nodes divide them, and none that were added.
+    pub(crate) fn invert_found(
+        &mut self,
+        find: &(impl Fn(usize, &mut [Sym3<T>]) + Sync),
+        masses: &[T],
+        filters: &[Filter<T>],
+        executor: &Executor,
+    ) {
         let [xx, yy, zz, xy, xz, yz] = self.inverses.each_mut().map(|numbers| NodeBlocks(numbers.as_mut_slice()));
-        let data = (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(&self.blocks[..])));
-        let work = |number: usize, (((xx, yy), (zz, xy)), ((xz, yz), ReadBlocks(blocks))): Inverting<'_, T>| {
-            let nodes = number * NODE_BLOCK..number * NODE_BLOCK + blocks.len();
+        let data = (((xx, yy), (zz, xy)), ((xz, yz), NodeBlocks(&mut self.traces[..])));
+        let work = |number: usize, (((xx, yy), (zz, xy)), ((xz, yz), NodeBlocks(traces))): Inverting<'_, T>| {
+            let nodes = number * NODE_BLOCK..number * NODE_BLOCK + traces.len();
+            let mut blocks = [Sym3::diagonal(T::ZERO); NODE_BLOCK];
+            let blocks = &mut blocks[..nodes.len()];
+            find(number, blocks);
             let mut inverses = [xx.0, yy.0, zz.0, xy.0, xz.0, yz.0];
-            dispatch!(dispatch_level(), _simd => invert_block(blocks, &masses[nodes.clone()], &mut inverses));
+            dispatch!(dispatch_level(), _simd => invert_block(blocks, &masses[nodes.clone()], traces, &mut inverses));
             for (node, filter) in filters[nodes].iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {
                 let [xx, yy, zz, xy, xz, yz] = inverses.each_ref().map(|numbers| numbers[node]);
                 let filtered = filtered(Sym3 { xx, yy, zz, xy, xz, yz }, filter);
@@ -52,6 +74,11 @@ impl<T: Scalar> BlockJacobi<T> {
             }
         };
         executor.each(node_blocks(masses.len()), data, &work);
+    }
+
+    /// Traces of the blocks of K that were inverted last.
+    pub(crate) fn traces(&self) -> &[T] {
+        &self.traces
     }
 
     /// Takes the inverses of another one, times `factor`, as those of the nodes from `start` on.
@@ -163,18 +190,19 @@ type Starting<'a, T> =
 type Striding<'a, T> =
     ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>));
 
-/// The inverses' six numbers, and the blocks.
+/// The inverses' six numbers, and the traces.
 type Inverting<'a, T> = (
     ((NodeBlocks<'a, T>, NodeBlocks<'a, T>), (NodeBlocks<'a, T>, NodeBlocks<'a, T>)),
-    ((NodeBlocks<'a, T>, NodeBlocks<'a, T>), ReadBlocks<'a, Mat3<T>>),
+    ((NodeBlocks<'a, T>, NodeBlocks<'a, T>), NodeBlocks<'a, T>),
 );
 
 /// (K + m I)⁻¹, or 1/m where that is not positive definite. The compiler makes whole registers of the second loop, but not of
 /// one that reads the blocks as well.
 #[inline(always)]
-fn invert_block<T: Scalar>(blocks: &[Mat3<T>], masses: &[T], inverses: &mut [&mut [T]; 6]) {
-    for (node, (block, &mass)) in blocks.iter().zip(masses).enumerate() {
-        put(block.symmetric_part() + Sym3::diagonal(mass), node, inverses);
+fn invert_block<T: Scalar>(blocks: &[Sym3<T>], masses: &[T], traces: &mut [T], inverses: &mut [&mut [T]; 6]) {
+    for (node, ((&block, &mass), trace)) in blocks.iter().zip(masses).zip(traces).enumerate() {
+        *trace = block.trace();
+        put(block + Sym3::diagonal(mass), node, inverses);
     }
     let [xx, yy, zz, xy, xz, yz] = inverses.each_mut().map(|numbers| numbers.iter_mut());
     for ((((((xx, yy), zz), xy), xz), yz), &mass) in xx.zip(yy).zip(zz).zip(xy).zip(xz).zip(yz).zip(masses) {

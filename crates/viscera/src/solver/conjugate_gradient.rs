@@ -174,15 +174,13 @@ impl<T: Scalar> ConjugateGradient<T> {
         x: &mut [Vec3<T>],
     ) -> (Size, f64) {
         let executor = problem.executor;
-        let data = (NodeBlocks(x), NodeBlocks(&mut self.product));
-        executor.each(node_blocks(data.0.0.len()), data, &|block, (NodeBlocks(x), NodeBlocks(product))| {
-            let nodes = block * NODE_BLOCK..;
-            let known = problem.filters[nodes.clone()].iter().zip(&problem.prescribed[nodes]);
-            x.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
-            product.copy_from_slice(x);
-        });
         let Self { residual, direction, product, held, sliding, .. } = self;
         let filtered = Filtered { held, sliding, filters: problem.filters };
+        let data = (NodeBlocks(x), NodeBlocks(&mut *product));
+        executor.each(node_blocks(data.0.0.len()), data, &|block, (NodeBlocks(x), NodeBlocks(product))| {
+            filtered.merge(block * NODE_BLOCK, x, problem.prescribed);
+            product.copy_from_slice(x);
+        });
         matrix.apply_along(Turn { weight: None, direction, product, filtered }, executor);
         preconditioner.start(matrix, Start { rhs: problem.rhs, direction, product, residual, filtered }, executor)
     }

@@ -28,12 +28,6 @@ impl<T: Scalar> Filter<T> {
         }
     }
 
-    /// Whether nothing is prescribed at any of these nodes, as in most blocks of a body: plain loops serve those.
-    #[inline]
-    pub(crate) fn are_free(filters: &[Self]) -> bool {
-        filters.iter().all(|filter| *filter == Self::Free)
-    }
-
     /// The same in another precision.
     pub fn cast<U: Scalar>(&self) -> Filter<U> {
         match self {

@@ -21,7 +21,16 @@ impl<T: Scalar> Filtered<'_, T> {
         self.apply_to_sliding(first, v);
     }
 
-    /// The same where held nodes have none. Once would leave the rounding of reactions, which are larger by far than what is
+    /// S v + (I − S) prescribed, with the prescribed values of all nodes.
+    pub(crate) fn merge(&self, first: usize, v: &mut [Vec3<T>], prescribed: &[Vec3<T>]) {
+        for nodes in [self.held, self.sliding] {
+            for node in among(nodes, first, v.len()).iter().map(|&node| node as usize) {
+                v[node - first] = self.filters[node].merge(v[node - first], prescribed[node]);
+            }
+        }
+    }
+
+    /// [`Filtered::apply`] where held nodes have none. Once would leave the rounding of reactions, which are larger by far than what is
     /// left of a residual; twice leaves the rounding of that.
     pub(crate) fn apply_to_sliding(&self, first: usize, v: &mut [Vec3<T>]) {
         for &node in among(self.sliding, first, v.len()) {
@@ -32,7 +41,7 @@ impl<T: Scalar> Filtered<'_, T> {
 }
 
 /// Those of `nodes` that are among the `count` from `first` on.
-fn among(nodes: &[u32], first: usize, count: usize) -> &[u32] {
+pub(crate) fn among(nodes: &[u32], first: usize, count: usize) -> &[u32] {
     let place = |node: usize| nodes.partition_point(|&other| (other as usize) < node);
     &nodes[place(first)..place(first + count)]
 }

@@ -27,6 +27,7 @@ pub(crate) use dense_cholesky::DenseCholesky;
 pub use envelope::Envelope;
 pub use filter::Filter;
 pub use filtered::Filtered;
+pub(crate) use filtered::among;
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
 pub use multigrid::{Cycle, Multigrid};

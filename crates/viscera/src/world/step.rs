@@ -90,8 +90,9 @@ impl<T: Scalar> World<T> {
 
     /// Remembers where everything is.
     fn keep(&mut self) {
+        let has_tools = !self.instruments.is_empty();
         for body in &mut self.bodies {
-            body.backup.keep(&body.state, &body.scratch.executor);
+            body.backup.keep(&body.state, has_tools, &body.scratch.executor);
         }
         self.keep_tools();
     }

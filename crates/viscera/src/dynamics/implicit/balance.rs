@@ -1,10 +1,11 @@
 //! The forces of a step, and what they lack to balance.
 
 use super::Scheme;
+use super::memory::ImplicitMemory;
 use super::step::Step;
 use crate::executor::{NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
-use crate::solver::{Filter, dot_of};
+use crate::solver::{among, dot_of};
 use crate::stage::Stage;
 
 /// Norms of the forces on free nodes [N].
@@ -33,7 +34,7 @@ impl<T: Scalar> Step<'_, T> {
         self.body.update_forces_and_linearize(self.stages);
         self.update_external_forces(self.from);
         self.memory.external.copy_from_slice(&self.body.external_forces);
-        self.memory.nodal.copy_from_slice(&self.memory.velocities);
+        self.memory.nodal.copy_from_slice(&self.body.state.velocities);
         self.find_damping();
         let (state, memory) = (&self.body.state, &mut *self.memory);
         for node in 0..memory.lack.len() {
@@ -41,13 +42,8 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// The forces at y = x + θ δ and what they lack to balance; gives their squares.
+    /// The forces where the body is, at y = x + θ δ, and what they lack to balance; gives their squares.
     pub(super) fn evaluate(&mut self) -> Squares {
-        let place = T::from_f64(self.numbers.place);
-        if self.go_to(place) {
-            self.body.state.positions_changed();
-            self.body.is_linearized = false;
-        }
         if self.settings.scheme == Scheme::EnergyMomentum {
             self.find_mean_forces();
         } else {
@@ -57,28 +53,10 @@ impl<T: Scalar> Step<'_, T> {
         self.update_external_forces(time);
         // Without, its forces stay the zeros that they are from the beginning.
         if self.body.damping > T::ZERO || self.body.stiffness_damping > T::ZERO {
-            self.find_velocities(place);
+            self.find_velocities(T::from_f64(self.numbers.place));
             self.find_damping();
         }
         self.find_lack()
-    }
-
-    /// Moves the body to x + θ δ; gives whether it was anywhere else.
-    fn go_to(&mut self, place: T) -> bool {
-        let (positions, memory) = (&mut self.body.state.positions, &*self.memory);
-        let work = |block: usize, NodeBlocks(positions): NodeBlocks<'_, Vec3<T>>| {
-            let (start, increment) = (&memory.start[block * NODE_BLOCK..], &memory.increment[block * NODE_BLOCK..]);
-            let mut moved = false;
-            for ((position, &start), &increment) in positions.iter_mut().zip(start).zip(increment) {
-                let there = increment.mul_add(place, start);
-                moved |= there != *position;
-                *position = there;
-            }
-            moved
-        };
-        let blocks = node_blocks(positions.len());
-        let executor = &self.body.scratch.executor;
-        executor.fold(blocks, NodeBlocks(positions), &work, &|a, b| a | b).unwrap_or(false)
     }
 
     /// Forces of the energy–momentum scheme between the two ends of the step.
@@ -131,9 +109,11 @@ impl<T: Scalar> Step<'_, T> {
     /// R − F − C v − M a of the nodes that forces move; gives the squares of it and of inertial, external and internal forces.
     pub(super) fn find_lack(&mut self) -> Squares {
         let inertia = T::from_f64(self.numbers.inertia / (self.dt * self.dt));
-        let (body, memory) = (&*self.body, &mut *self.memory);
-        let (increment, coast, damping, filters) = (&memory.increment, &memory.coast, &memory.damping, &memory.filters);
+        let body = &*self.body;
+        let ImplicitMemory { increment, coast, damping, filters, driven, lack, .. } = &mut *self.memory;
+        let (increment, coast, damping, filters, driven) = (&*increment, &*coast, &*damping, &*filters, &*driven);
         let work = |block: usize, NodeBlocks(lacks): NodeBlocks<'_, Vec3<T>>| {
+            let is_free = among(driven, block * NODE_BLOCK, lacks.len()).is_empty();
             let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lacks.len();
             let external = &body.external_forces[nodes.clone()];
             let internal = &body.state.internal_forces[nodes.clone()];
@@ -153,7 +133,7 @@ impl<T: Scalar> Step<'_, T> {
                 let (lacks, inertial) = (&*lacks, &*inertial);
                 [dot_of(lacks, lacks), dot_of(inertial, inertial), dot_of(external, external), dot_of(internal, internal)]
             });
-            if Filter::are_free(filters) {
+            if is_free {
                 return squares;
             }
             let square = |forces: &[Vec3<T>]| {
@@ -164,7 +144,7 @@ impl<T: Scalar> Step<'_, T> {
         };
         let blocks = node_blocks(increment.len());
         let sums = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|i| a[i] + b[i]);
-        let squares = body.scratch.executor.fold(blocks, NodeBlocks(&mut memory.lack), &work, &sums);
+        let squares = body.scratch.executor.fold(blocks, NodeBlocks(lack), &work, &sums);
         let mut squares = squares.unwrap_or_default();
         if !self.body.contacts.is_empty() || !self.memory.dragged.is_empty() {
             squares = self.add_tools(squares);

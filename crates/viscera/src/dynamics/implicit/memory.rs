@@ -2,7 +2,7 @@ use super::tangent::StepMatrix;
 use super::{Implicit, MatrixForm, Preconditioning};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid, Reach};
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid, Reach, among};
 
 /// What an implicit step computes in; it means nothing between steps.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct ImplicitMemory<T> {
     pub(super) lack: Vec<Vec3<T>>,
     /// Correction of δ in one iteration [m].
     pub(super) correction: Vec<Vec3<T>>,
-    /// What driven nodes still have to go [m].
+    /// What driven nodes still have to go [m]; of others it means nothing.
     pub(super) prescribed: Vec<Vec3<T>>,
     /// Memory for a nodal array: velocities that damp, places at the end.
     pub(super) nodal: Vec<Vec3<T>>,
@@ -37,6 +37,8 @@ pub struct ImplicitMemory<T> {
     /// The least of them over the linear systems of the step [N].
     pub(super) least_rounding: f64,
     pub(super) filters: Vec<Filter<T>>,
+    /// Nodes that were not free at the beginning of the step, in ascending order: the filters of all others are.
+    pub(super) driven: Vec<u32>,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
@@ -81,6 +83,7 @@ impl<T: Scalar> ImplicitMemory<T> {
             rounding: 0.0,
             least_rounding: 0.0,
             filters: vec![Filter::Free; nodes],
+            driven: Vec::with_capacity(nodes),
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.stop(true).at_most()),
@@ -90,6 +93,11 @@ impl<T: Scalar> ImplicitMemory<T> {
             history: Vec::with_capacity(settings.newton.at_most(true) as usize + 1),
             gain: (0.0, 0.0),
         }
+    }
+
+    /// The driven ones among the `count` nodes from `first` on.
+    pub(super) fn driven_among(&self, first: usize, count: usize) -> &[u32] {
+        among(&self.driven, first, count)
     }
 
     /// Residuals of the last linear solve over their scale: at the start and after each iteration.

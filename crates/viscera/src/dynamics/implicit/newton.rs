@@ -8,9 +8,9 @@ use super::memory::ImplicitMemory;
 use super::potential::Settling;
 use super::step::Step;
 use super::tools::Guess;
-use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
+use crate::executor::{NODE_BLOCK, ReadBlocks, node_blocks};
 use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
-use crate::solver::{Filter, dot_of};
+use crate::solver::{among, dot_of};
 
 /// A linear solve has gone astray if it leaves more of the forces than there was, and more than this share of them all.
 const ASTRAY: f64 = 0.5;
@@ -77,7 +77,7 @@ impl<T: Scalar> Group<'_, T> {
                     negative_curvature: false,
                 };
             }
-            self.each(|step| step.memory.increment.fill(Vec3::ZERO));
+            self.each(|step| step.move_back());
         }
         let (relative, at_most) = INSTEAD;
         self.went_astray = true;
@@ -183,40 +183,28 @@ impl<T: Scalar> Group<'_, T> {
 impl<T: Scalar> Step<'_, T> {
     /// Sets what driven nodes still have to go; gives whether all are where they have to be.
     pub(super) fn go_on(&mut self) -> bool {
-        let ImplicitMemory { prescribed, coast, increment, filters, .. } = &mut *self.memory;
-        let parts = node_blocks(prescribed.len());
-        let work = |block: usize, NodeBlocks(prescribed): NodeBlocks<'_, Vec3<T>>| {
-            let mut arrived = true;
-            for (i, prescribed) in prescribed.iter_mut().enumerate() {
-                let node = block * NODE_BLOCK + i;
-                *prescribed = Vec3::ZERO;
-                if filters[node] == Filter::Free {
-                    continue;
-                }
-                let rest = coast[node] - increment[node];
-                let rest = rest - filters[node].apply(rest);
-                // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
-                let ways = coast[node].norm() + increment[node].norm();
-                let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
-                if !is_there {
-                    *prescribed = rest;
-                }
-                arrived &= is_there;
-            }
-            arrived
-        };
-        let executor = &self.body.scratch.executor;
-        executor.fold(parts, NodeBlocks(prescribed), &work, &|a, b| a && b).unwrap_or(true)
+        let ImplicitMemory { prescribed, coast, increment, filters, driven, .. } = &mut *self.memory;
+        let mut arrived = true;
+        for node in driven.iter().map(|&node| node as usize) {
+            let rest = coast[node] - increment[node];
+            let rest = rest - filters[node].apply(rest);
+            // What the filter's own rounding leaves of a way across the directions that are known is no way to go.
+            let ways = coast[node].norm() + increment[node].norm();
+            let is_there = rest.norm() <= ways * T::EPSILON * T::from_f64(8.0);
+            prescribed[node] = if is_there { Vec3::ZERO } else { rest };
+            arrived &= is_there;
+        }
+        arrived
     }
 
     /// Work of what the forces lack to balance against the correction [J], in the free directions: reactions are larger by far,
     /// and would turn the rounding of a correction across them into work.
     pub(super) fn work(&self) -> f64 {
-        let ImplicitMemory { filters, lack, correction, .. } = &*self.memory;
+        let ImplicitMemory { filters, driven, lack, correction, .. } = &*self.memory;
         let work = |block: usize, ReadBlocks(lack): ReadBlocks<'_, Vec3<T>>| {
             let nodes = block * NODE_BLOCK..block * NODE_BLOCK + lack.len();
             let (filters, ways) = (&filters[nodes.clone()], &correction[nodes]);
-            if Filter::are_free(filters) {
+            if among(driven, block * NODE_BLOCK, lack.len()).is_empty() {
                 return dispatch!(dispatch_level(), _simd => dot_of(lack, ways));
             }
             let free = filters.iter().zip(lack).map(|(filter, &lack)| filter.apply(lack));

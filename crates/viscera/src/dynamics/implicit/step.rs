@@ -4,8 +4,8 @@ use super::scheme::{Coast, Numbers, Past, Start};
 use crate::body::{NodeMotion, SimulatedBody};
 use crate::dynamics::Drive;
 use crate::executor::{NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
-use crate::math::{Scalar, Vec3};
-use crate::solver::Filter;
+use crate::math::{Scalar, Vec3, dispatch, dispatch_level};
+use crate::solver::{Filter, among};
 use crate::stage::Stages;
 
 /// One implicit step of one body, whatever the scheme: its part in the equations of those that are solved together.
@@ -23,10 +23,8 @@ pub(super) struct Step<'a, T: Scalar> {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Remembers the beginning, and finds the accelerations there where the scheme needs them.
+    /// Forgets the step before, and finds the accelerations at the beginning where the scheme needs them.
     pub(super) fn begin(&mut self) {
-        self.memory.start.copy_from_slice(&self.body.state.positions);
-        self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
         self.memory.least_rounding = f64::INFINITY;
         self.memory.matrix.is_exact = false;
@@ -38,11 +36,16 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// Where nodes would go without forces, and where driven ones have to go.
+    /// Remembers the beginning; where nodes would go without forces, and where driven ones have to go.
     pub(super) fn coast(&mut self) {
         let (body, drive, scheme, dt) = (&*self.body, self.drive, self.settings.scheme, T::from_f64(self.dt));
-        let ImplicitMemory { increment, coast, coast_velocities, filters, lack, .. } = &mut *self.memory;
+        let ImplicitMemory { start, velocities, increment, coast, coast_velocities, filters, driven, lack, .. } =
+            &mut *self.memory;
         let (state, lack, parts) = (&body.state, &lack[..], node_blocks(lack.len()));
+        driven.drain(..).for_each(|node| filters[node as usize] = Filter::Free);
+        let others = state.motions.iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
+        driven.extend(others.map(|(node, _)| node as u32));
+        let driven = &driven[..];
         let free = |node: usize| {
             let past = state.past.is_known.then(|| Past {
                 increment: state.positions[node] - state.past.positions[node],
@@ -52,35 +55,39 @@ impl<T: Scalar> Step<'_, T> {
             scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt)
         };
         let goes_by_velocity = scheme.coasts_by_velocity(state.past.is_known);
-        let data = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
-        body.scratch.executor.each(parts, data, &|block, ((increment, coast), (coast_velocities, filters))| {
-            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + coast.0.len();
-            let ends = coast.0.iter_mut().zip(coast_velocities.0.iter_mut());
-            if goes_by_velocity {
-                ends.zip(&state.velocities[nodes.clone()]).for_each(|((coast, end), &v)| (*coast, *end) = (v * dt, v));
-            } else {
-                ends.zip(nodes.clone()).for_each(|((coast, end), node)| {
-                    Coast { increment: *coast, velocity: *end } = free(node);
-                });
-            }
-            increment.0.fill(Vec3::ZERO);
-            filters.0.fill(Filter::Free);
-            let others =
-                state.motions[nodes.clone()].iter().enumerate().filter(|(_, motion)| **motion != NodeMotion::Free);
-            for (i, _) in others {
-                let node = nodes.start + i;
-                let position = state.positions[node];
-                let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
-                filters.0[i] = filter;
-                match target {
-                    Some(target) if filter == Filter::Held => {
-                        (coast.0[i], coast_velocities.0[i]) = (target - position, Vec3::ZERO);
-                    }
-                    Some(target) => coast.0[i] = filter.merge(coast.0[i], target - position),
-                    None => {}
+        let beginning = (NodeBlocks(start), NodeBlocks(velocities));
+        let ways = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
+        let work =
+            |block: usize, ((start, own), ((increment, coast), (coast_velocities, filters))): Coasting<'_, T>| {
+                let nodes = block * NODE_BLOCK..block * NODE_BLOCK + coast.0.len();
+                let velocities = &state.velocities[nodes.clone()];
+                start.0.copy_from_slice(&state.positions[nodes.clone()]);
+                own.0.copy_from_slice(velocities);
+                if goes_by_velocity {
+                    dispatch!(dispatch_level(), _simd => coast.0.iter_mut().zip(velocities).for_each(|(coast, &v)| *coast = v * dt));
+                    coast_velocities.0.copy_from_slice(velocities);
+                } else {
+                    let ends = coast.0.iter_mut().zip(coast_velocities.0.iter_mut());
+                    ends.zip(nodes.clone()).for_each(|((coast, end), node)| {
+                        Coast { increment: *coast, velocity: *end } = free(node);
+                    });
                 }
-            }
-        });
+                increment.0.fill(Vec3::ZERO);
+                for &node in among(driven, nodes.start, nodes.len()) {
+                    let (node, i) = (node as usize, node as usize - nodes.start);
+                    let position = state.positions[node];
+                    let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
+                    filters.0[i] = filter;
+                    match target {
+                        Some(target) if filter == Filter::Held => {
+                            (coast.0[i], coast_velocities.0[i]) = (target - position, Vec3::ZERO);
+                        }
+                        Some(target) => coast.0[i] = filter.merge(coast.0[i], target - position),
+                        None => {}
+                    }
+                }
+            };
+        body.scratch.executor.each(parts, (beginning, ways), &work);
     }
 
     /// v⁺ for the δ that is known.
@@ -88,16 +95,38 @@ impl<T: Scalar> Step<'_, T> {
         end_velocity(self.memory, self.numbers, self.dt, node)
     }
 
-    /// δ grows by `length` corrections.
+    /// δ grows by `length` corrections, and the body goes to x + θ δ.
     pub(super) fn move_by(&mut self, length: f64) {
-        let length = T::from_f64(length);
-        let ImplicitMemory { increment, correction, .. } = &mut *self.memory;
-        let data = (NodeBlocks(increment), ReadBlocks(correction));
-        self.body.scratch.executor.each(node_blocks(correction.len()), data, &|_, (increment, correction)| {
-            for (increment, &correction) in increment.0.iter_mut().zip(correction.0) {
-                *increment = correction.mul_add(length, *increment);
-            }
-        });
+        let (length, place) = (T::from_f64(length), T::from_f64(self.numbers.place));
+        let ImplicitMemory { start, increment, correction, .. } = &mut *self.memory;
+        let (state, executor) = (&mut self.body.state, &self.body.scratch.executor);
+        let data = ((NodeBlocks(&mut state.positions), NodeBlocks(increment)), ReadBlocks(correction));
+        let work =
+            |block: usize, ((NodeBlocks(positions), NodeBlocks(increment)), ReadBlocks(correction)): Moving<'_, T>| {
+                let start = &start[block * NODE_BLOCK..];
+                dispatch!(dispatch_level(), _simd => {
+                    let mut moved = false;
+                    for ((position, increment), (&correction, &start)) in positions.iter_mut().zip(increment).zip(correction.iter().zip(start)) {
+                        *increment = correction.mul_add(length, *increment);
+                        let there = increment.mul_add(place, start);
+                        moved |= there != *position;
+                        *position = there;
+                    }
+                    moved
+                })
+            };
+        if executor.fold(node_blocks(correction.len()), data, &work, &|a, b| a | b).unwrap_or(false) {
+            state.positions_changed();
+            self.body.is_linearized = false;
+        }
+    }
+
+    /// δ is zero again, and the body where it began.
+    pub(super) fn move_back(&mut self) {
+        self.memory.increment.fill(Vec3::ZERO);
+        self.body.state.positions.copy_from_slice(&self.memory.start);
+        self.body.state.positions_changed();
+        self.body.is_linearized = false;
     }
 
     /// The state at the end of the step.
@@ -105,39 +134,39 @@ impl<T: Scalar> Step<'_, T> {
         self.account_for_tools();
         let (memory, numbers, dt) = (&*self.memory, self.numbers, self.dt);
         let (state, executor) = (&mut self.body.state, &self.body.scratch.executor);
-        let data = (NodeBlocks(&mut state.positions), NodeBlocks(&mut state.velocities));
-        let work =
-            |block: usize, (NodeBlocks(x), NodeBlocks(v)): (NodeBlocks<'_, Vec3<T>>, NodeBlocks<'_, Vec3<T>>)| {
-                let mut moved = false;
-                for i in 0..x.len() {
-                    let end = memory.start[block * NODE_BLOCK + i] + memory.increment[block * NODE_BLOCK + i];
-                    moved |= end != x[i];
-                    x[i] = end;
-                }
-                let nodes = block * NODE_BLOCK..block * NODE_BLOCK + v.len();
-                let is_free = Filter::are_free(&memory.filters[nodes.clone()]);
-                let share = T::from_f64(numbers.velocity / dt);
-                let ways = memory.increment[nodes.clone()].iter().zip(&memory.coast[nodes.clone()]);
-                let free = ways.zip(&memory.coast_velocities[nodes.clone()]);
-                if is_free {
-                    v.iter_mut().zip(free).for_each(|(v, ((&increment, &coast), &velocity))| {
-                        *v = (increment - coast).mul_add(share, velocity);
-                    });
-                } else {
-                    v.iter_mut().zip(nodes).for_each(|(v, node)| *v = end_velocity(memory, numbers, dt, node));
-                }
-                moved
-            };
-        let moved = executor.fold(node_blocks(memory.start.len()), data, &work, &|a, b| a | b).unwrap_or(false);
-        // The last evaluation of a full step was here, and its forces serve the next step.
-        if moved || numbers.place != 1.0 {
+        // At a place of one the body is there already, and the forces that were found last serve the next step.
+        if numbers.place != 1.0 {
+            let ends = memory.start.iter().zip(&memory.increment).map(|(&start, &increment)| start + increment);
+            state.positions.iter_mut().zip(ends).for_each(|(x, end)| *x = end);
             state.positions_changed();
         }
+        let parts = node_blocks(memory.start.len());
+        executor.each(parts, NodeBlocks(&mut state.velocities), &|block, NodeBlocks(v)| {
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + v.len();
+            let share = T::from_f64(numbers.velocity / dt);
+            let ways = memory.increment[nodes.clone()].iter().zip(&memory.coast[nodes.clone()]);
+            let free = ways.zip(&memory.coast_velocities[nodes.clone()]);
+            dispatch!(dispatch_level(), _simd => v.iter_mut().zip(free).for_each(|(v, ((&increment, &coast), &velocity))| {
+                *v = (increment - coast).mul_add(share, velocity);
+            }));
+            for &node in memory.driven_among(nodes.start, nodes.len()) {
+                v[node as usize - nodes.start] = end_velocity(memory, numbers, dt, node as usize);
+            }
+        });
         if self.settings.scheme.needs_past() {
             state.past.keep(&memory.start, &memory.velocities);
         }
     }
 }
+
+/// x and v at the beginning, δ and δ̂, v̂ and filters.
+type Coasting<'a, T> = (
+    (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>),
+    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Filter<T>>)),
+);
+
+/// Places, δ and its correction.
+type Moving<'a, T> = ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), ReadBlocks<'a, Vec3<T>>);
 
 #[inline]
 fn end_velocity<T: Scalar>(memory: &ImplicitMemory<T>, numbers: Numbers, dt: f64, node: usize) -> Vec3<T> {

@@ -63,7 +63,8 @@ impl<T: Scalar> Step<'_, T> {
     /// with that share, and the step has to be solved again.
     pub(super) fn slip(&mut self) -> bool {
         let known = self.memory.dragged.len();
-        for node in 0..self.memory.start.len() {
+        for driven in 0..self.memory.driven.len() {
+            let node = self.memory.driven[driven] as usize;
             let NodeMotion::Held(tool) = self.body.state.motions[node] else { continue };
             let limit = self.drive.frames[tool as usize].limit;
             if self.memory.filters[node] != Filter::Held || limit == f64::INFINITY {
@@ -92,7 +93,7 @@ impl<T: Scalar> Step<'_, T> {
     /// Forgets what was found, for the step to be solved again.
     pub(super) fn start_again(&mut self) {
         self.body.contacts.clear();
-        self.memory.increment.fill(Vec3::ZERO);
+        self.move_back();
         self.memory.history.clear();
     }
 

@@ -33,8 +33,11 @@ pub fn polar<R: Real>(f: &Mat3<R>) -> Mat3<R> {
         x = cofactor.mul_add(one.half() / determinant, x * one.half());
         cofactor = x.cofactor();
         determinant = x.columns[0].dot(cofactor.columns[0]);
-        if R::all((determinant - one).abs().less_than(arrived)) {
-            return cofactor.mul_add(one.half() / determinant, x * one.half());
+        let beyond = determinant - one;
+        if R::all(beyond.abs().less_than(arrived)) {
+            // 1/(1 + d) = 1 − d + d², to the cube of a root of a rounding.
+            let inverse = beyond.mul_add(beyond - one, one);
+            return cofactor.mul_add(inverse.half(), x * one.half());
         }
     }
     closed(f)

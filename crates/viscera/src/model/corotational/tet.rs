@@ -4,25 +4,27 @@ use std::sync::Arc;
 
 use super::Corotational;
 use super::formulation::{Formulation, Rotation, Tangent};
-use super::hooke::{FIBRED, Hooke, ISOTROPIC};
+use super::hooke::Hooke;
 use super::turned::{self, FIBRE, FIBRE_RATIO, FrozenProduct, RATIO, Turned};
 use crate::material::Tissue;
 use crate::math::rotation::qr;
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Vec3};
 use crate::mesh::TetMesh;
 use crate::model::BlockSink;
-use crate::model::block_sink::{DiagonalSink, add_tet_blocks};
+use crate::model::block_sink::add_tet_blocks;
 use crate::model::block_table::BlockTable;
 use crate::model::patch::{Deformed, Element, Record, TetFans};
 use crate::model::tet_loop::{RestTet, edge_matrix, tet_fans};
 use crate::model::{ForceModel, ModelError, Patches, Scratch};
 use crate::solver::Turn;
 
-/// Columns before those of the law: Dm⁻¹ by columns, V0.
-const SHAPE: usize = 10;
-const VOLUME: usize = 9;
-/// The most columns.
-const MOST: usize = SHAPE + FIBRED;
+/// Columns: Dm⁻¹ by columns, √(V0 μ), λ/μ, and where there are fibres their direction and 2κ/μ. With the root and the quotients of them found
+/// once, turned gradients take neither.
+const ROOT: usize = 9;
+const RATIO_AT_REST: usize = 10;
+const FIBRE_AT_REST: usize = 11;
+const ISOTROPIC: usize = 11;
+const FIBRED: usize = 15;
 
 /// Corotational tetrahedra. For QR the rest shape is turned so that its own edges 01 and 02 lie along its first axes:
 /// what Gram–Schmidt finds in F then is Q Q0ᵀ, and nothing is left to do for Q0.
@@ -37,28 +39,44 @@ pub(super) struct CorotationalTets<T: Scalar> {
 /// The numbers of a batch.
 struct Batch<R> {
     inverse: Mat3<R>,
-    volume: R,
+    /// √(V0 μ).
+    root: R,
+    /// The law over μ.
     hooke: Hooke<R>,
 }
 
 impl<R: Real> Batch<R> {
     #[inline(always)]
-    fn at(c: &[R; MOST], fibred: bool) -> Self {
-        let column = |i: usize| Vec3::new(c[3 * i], c[3 * i + 1], c[3 * i + 2]);
+    fn at(c: &[R; FIBRED], fibred: bool) -> Self {
+        let vector = |i: usize| Vec3::new(c[i], c[i + 1], c[i + 2]);
         Self {
-            inverse: Mat3::from_columns(column(0), column(1), column(2)),
-            volume: c[VOLUME],
-            hooke: Hooke::at(&c[SHAPE..], fibred),
+            inverse: Mat3::from_columns(vector(0), vector(3), vector(6)),
+            root: c[ROOT],
+            hooke: Hooke {
+                lambda: c[RATIO_AT_REST],
+                mu: c[ROOT].like(1.0),
+                fibre: if fibred { Some((vector(FIBRE_AT_REST), c[FIBRED - 1])) } else { None },
+            },
         }
     }
+
+    /// Forces of the stress P/μ.
+    #[inline(always)]
+    fn forces(&self, stress: Mat3<R>) -> Mat3<R> {
+        stress * self.root.squared() * self.inverse.transpose()
+    }
+}
+
+/// How many columns there are.
+fn columns(fibred: bool) -> usize {
+    if fibred { FIBRED } else { ISOTROPIC }
 }
 
 impl<T: Scalar> CorotationalTets<T> {
     pub(super) fn new(mesh: &TetMesh, tissue: &Tissue, formulation: Formulation) -> Result<Self, ModelError> {
         let order = tet_fans::<T>(mesh)?;
         let fibred = super::has_fibres(tissue);
-        let columns = SHAPE + if fibred { FIBRED } else { ISOTROPIC };
-        let mut constants = BlockTable::new(T::LANES, order.row_count(), columns, T::ZERO);
+        let mut constants = BlockTable::new(T::LANES, order.row_count(), columns(fibred), T::ZERO);
         for tet in order.tetrahedra() {
             let rest = RestTet::turned(mesh, tet.cell, tet.corners);
             let frame = match formulation.rotation {
@@ -66,16 +84,14 @@ impl<T: Scalar> CorotationalTets<T> {
                 Rotation::Polar | Rotation::Svd => Mat3::IDENTITY,
             };
             let stiffness = tissue.at_rest(tet.cell);
-            let law = Hooke::numbers(&stiffness, frame.transpose_mul(stiffness.direction), fibred);
+            let (lame, direction) = (stiffness.lame, frame.transpose_mul(stiffness.direction).to_array());
             let shape = (rest.inverse * frame).columns.into_iter().flat_map(Vec3::to_array);
-            let numbers = shape.chain([if tet.is_padding { 0.0 } else { rest.volume }]).chain(law);
-            constants.set_row(tet.row, numbers.map(T::from_f64));
+            let root = if tet.is_padding { 0.0 } else { (rest.volume * lame.mu).sqrt() };
+            let fibre = direction.into_iter().chain([2.0 * stiffness.fibre_stiffness / lame.mu]);
+            let numbers = shape.chain([root, lame.lambda / lame.mu]).chain(fibre);
+            constants.set_row(tet.row, numbers.take(columns(fibred)).map(T::from_f64));
         }
         Ok(Self { order: Arc::new(order), constants, formulation, fibred })
-    }
-
-    fn columns(&self) -> usize {
-        SHAPE + if self.fibred { FIBRED } else { ISOTROPIC }
     }
 
     fn linearized_columns(&self) -> usize {
@@ -85,10 +101,9 @@ impl<T: Scalar> CorotationalTets<T> {
     #[inline(always)]
     fn load<S: Simd, const PLAIN: bool>(&self, part: Part<S>, slot: usize) -> Batch<T::Lanes<S>> {
         let fibred = !PLAIN && self.fibred;
-        let columns = SHAPE + if fibred { FIBRED } else { ISOTROPIC };
-        let block = self.constants.block_of(T::LANES, columns, slot);
-        let mut numbers = [T::Lanes::<S>::splat(part.simd, T::ZERO); MOST];
-        for column in 0..columns {
+        let block = self.constants.block_of(T::LANES, columns(fibred), slot);
+        let mut numbers = [T::Lanes::<S>::splat(part.simd, T::ZERO); FIBRED];
+        for column in 0..columns(fibred) {
             numbers[column] = T::Lanes::<S>::load(part, &block[column * T::LANES..]);
         }
         Batch::at(&numbers, fibred)
@@ -129,13 +144,13 @@ impl<T: Scalar> CorotationalTets<T> {
     /// The blocks of the exact tangent, column by column.
     fn add_exact_blocks(&self, x: &[Vec3<T>], sink: &mut dyn BlockSink<T>) {
         for tet in self.order.tetrahedra().filter(|tet| !tet.is_padding) {
-            let Batch { inverse, volume, hooke } = self.numbers::<T>(tet.row);
-            let f = edge_matrix(x, tet.corners) * inverse;
+            let batch = self.numbers::<T>(tet.row);
+            let f = edge_matrix(x, tet.corners) * batch.inverse;
             let r = self.formulation.rotation(&f);
             add_tet_blocks(tet.corners, sink, |dd| {
-                let df = *dd * inverse;
+                let df = *dd * batch.inverse;
                 let dr = self.formulation.rotation_along(&f, &r, &df);
-                self.formulation.stress_along(&hooke, (&r, &dr), (&f, &df)) * volume * inverse.transpose()
+                batch.forces(self.formulation.stress_along(&batch.hooke, (&r, &dr), (&f, &df)))
             });
         }
     }
@@ -168,8 +183,8 @@ impl<T: Scalar> CorotationalTets<T> {
 
     /// The numbers of one element.
     fn numbers<U: Scalar>(&self, row: usize) -> Batch<U> {
-        let mut numbers = [U::ZERO; MOST];
-        for (column, number) in numbers.iter_mut().enumerate().take(self.columns()) {
+        let mut numbers = [U::ZERO; FIBRED];
+        for (column, number) in numbers.iter_mut().enumerate().take(columns(self.fibred)) {
             *number = U::from_f64(self.constants.get(row, column).to_f64());
         }
         Batch::at(&numbers, self.fibred)
@@ -190,24 +205,20 @@ struct Turning<'a, T: Scalar, const PLAIN: bool>(&'a CorotationalTets<T>);
 impl<T: Scalar, const PLAIN: bool> Element<T, 1> for Forces<'_, T, PLAIN> {
     #[inline(always)]
     fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 1]) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) =
-            (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
-        let f = edges[0] * inverse;
-        let stress = formulation.stress(&hooke, &formulation.rotation(&f), &f);
-        stress * volume * inverse.transpose()
+        let (batch, formulation) = (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
+        let f = edges[0] * batch.inverse;
+        batch.forces(formulation.stress(&batch.hooke, &formulation.rotation(&f), &f))
     }
 }
 
 impl<T: Scalar> Element<T, 2> for Derivative<'_, T> {
     #[inline(always)]
     fn forces<S: Simd>(&self, part: Part<S>, slot: usize, edges: &[Mat3<T::Lanes<S>>; 2]) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) =
-            (self.tets.load::<S, false>(part, slot), self.formulation);
-        let (f, df) = (edges[0] * inverse, edges[1] * inverse);
+        let (batch, formulation) = (self.tets.load::<S, false>(part, slot), self.formulation);
+        let (f, df) = (edges[0] * batch.inverse, edges[1] * batch.inverse);
         let r = formulation.rotation(&f);
         let dr = formulation.rotation_along(&f, &r, &df);
-        let stress = formulation.stress_along(&hooke, (&r, &dr), (&f, &df));
-        stress * volume * inverse.transpose()
+        batch.forces(formulation.stress_along(&batch.hooke, (&r, &dr), (&f, &df)))
     }
 }
 
@@ -218,7 +229,7 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
 
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
-        self.0.constants.prefetch(T::LANES, self.0.columns(), slot);
+        self.0.constants.prefetch(T::LANES, columns(self.0.fibred), slot);
     }
 
     #[inline(always)]
@@ -240,20 +251,19 @@ impl<T: Scalar, const PLAIN: bool> Record<T> for Turning<'_, T, PLAIN> {
         &Deformed { edges, f, r }: &Deformed<T::Lanes<S>>,
         row: &mut [T],
     ) -> Mat3<T::Lanes<S>> {
-        let (Batch { inverse, volume, hooke }, formulation) =
-            (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
+        let (batch, formulation) = (self.0.load::<S, PLAIN>(part, slot), self.0.formulation::<PLAIN>());
         let (transport, scale) = formulation.transport(&r, &f);
-        let root = (volume * scale * hooke.mu).sqrt();
+        let root = if PLAIN { batch.root } else { batch.root * scale.sqrt() };
         let turned = Turned {
-            gradients: transport * inverse.transpose() * root,
-            ratio: hooke.lambda / hooke.mu,
-            fibre: hooke.fibre.map(|(direction, stiffness)| (r * direction, stiffness / hooke.mu)),
+            gradients: transport * batch.inverse.transpose() * root,
+            ratio: batch.hooke.lambda,
+            fibre: batch.hooke.fibre.map(|(direction, stiffness)| (r * direction, stiffness)),
         };
         turned.store::<T, S>(part, row);
         if formulation.is_linear_in_its_frame() {
             turned.forces(&(edges * turned.gradients.transpose() - Mat3::diagonal(root)))
         } else {
-            formulation.stress(&hooke, &r, &f) * volume * inverse.transpose()
+            batch.forces(formulation.stress(&batch.hooke, &r, &f))
         }
     }
 }
@@ -285,14 +295,11 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         }
     }
 
-    fn linearize_and_add_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
-        match self.formulation.tangent {
-            Tangent::Frozen => {
-                let patches = self.turn(x, scratch);
-                scratch.add_sums(patches, out);
-            }
-            Tangent::Exact => self.add_forces(x, scratch, out),
-        }
+    fn linearize_and_sum_forces(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        Some(match self.formulation.tangent {
+            Tangent::Frozen => self.turn(x, scratch),
+            Tangent::Exact => self.sum(x, scratch),
+        })
     }
 
     fn add_product(&self, x: &[Vec3<T>], dx: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Vec3<T>]) {
@@ -341,17 +348,16 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         }
     }
 
-    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        if scratch.is_linearized {
-            let (sums, linearization) = scratch.sums(self.sum_rows());
-            if self.fibred {
-                self.order.add_diagonal(x, &FrozenProduct::<T, true>(linearization), sums, out);
-            } else {
-                self.order.add_diagonal(x, &FrozenProduct::<T, false>(linearization), sums, out);
-            }
-        } else {
-            self.add_blocks(x, scratch, &mut DiagonalSink(out));
+    fn sum_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        if !scratch.is_linearized {
+            return None;
         }
+        let (sums, linearization) = scratch.sums(self.sum_rows());
+        Some(if self.fibred {
+            self.order.sum_diagonal(x, &FrozenProduct::<T, true>(linearization), sums)
+        } else {
+            self.order.sum_diagonal(x, &FrozenProduct::<T, false>(linearization), sums)
+        })
     }
 
     fn has_potential(&self) -> bool {
@@ -367,17 +373,17 @@ impl<T: Scalar> ForceModel<T> for CorotationalTets<T> {
         let there = self.order.tetrahedra().filter(|tet| !tet.is_padding);
         there
             .map(|tet| {
-                let Batch { inverse, volume, hooke } = self.numbers::<f64>(tet.row);
+                let Batch { inverse, root, hooke } = self.numbers::<f64>(tet.row);
                 let [a, b, c, d] = tet.corners.map(|node| x[node as usize].cast::<f64>());
                 let f = Mat3::from_columns(b - a, c - a, d - a) * inverse;
-                volume * self.formulation.energy(&hooke, &self.formulation.rotation(&f), &f)
+                root.squared() * self.formulation.energy(&hooke, &self.formulation.rotation(&f), &f)
             })
             .sum()
     }
 
     fn remove(&mut self, cells: &[u32]) {
         for &cell in cells {
-            *self.constants.get_mut(self.order.row(cell), VOLUME) = T::ZERO;
+            *self.constants.get_mut(self.order.row(cell), ROOT) = T::ZERO;
         }
     }
 

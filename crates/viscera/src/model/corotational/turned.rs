@@ -116,6 +116,8 @@ impl<T: Scalar, const FIBRED: bool> Element<T, 1> for FrozenProduct<'_, T, FIBRE
 }
 
 impl<T: Scalar, const FIBRED: bool> Diagonal<T> for FrozenProduct<'_, T, FIBRED> {
+    const IS_OF_EDGES: bool = false;
+
     #[inline(always)]
     fn prefetch(&self, slot: usize) {
         self.fetch(slot);

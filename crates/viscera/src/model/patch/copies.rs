@@ -55,7 +55,7 @@ impl Copies {
 
     /// The same for a block of nodes.
     #[inline(always)]
-    fn each_of_block<V>(&self, block: usize, out: &mut [V], add: &impl Fn(&mut V, usize)) {
+    pub(super) fn each_of_block<V>(&self, block: usize, out: &mut [V], add: &impl Fn(&mut V, usize)) {
         for (sum, &row) in out.iter_mut().zip(self.firsts(block, NODE_BLOCK)) {
             if row != NONE {
                 add(sum, row as usize);

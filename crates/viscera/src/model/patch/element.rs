@@ -47,6 +47,8 @@ impl<R: Real> Shared<R> {
 
 /// Blocks on the diagonal of a stiffness, as a function of the edges.
 pub(crate) trait Diagonal<T: Scalar>: Sync {
+    /// Whether blocks depend on the edges.
+    const IS_OF_EDGES: bool = true;
     /// Whether it is worth compiling for each instruction set.
     const IS_WIDE: bool = true;
     /// As [`Element::prefetch`].

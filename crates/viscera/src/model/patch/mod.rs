@@ -17,7 +17,7 @@ pub(crate) use element::{Deformed, Diagonal, Element, ForcesAndInvariants, Measu
 pub(crate) use tet_fans::TetFans;
 
 use self::copies::Copies;
-use crate::executor::{Divide, Executor, NodeBlocks, node_blocks};
+use crate::executor::{Divide, Executor, NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level, large_pages};
 use crate::mesh::partition;
 
@@ -30,6 +30,8 @@ const TOGETHER: usize = 16;
 
 /// Numbers of the nodes of a patch, four to a node, so that lanes load and store whole rows.
 pub(crate) type PatchRows<T> = [[T; 4]; PATCH_NODES];
+/// Two rows for each node of a patch.
+pub(crate) type PatchPairs<T> = [[T; 4]; 2 * PATCH_NODES];
 
 /// Rows of no patch yet. Loops make them once for many patches: to clear them for each took 4 % of a sub-step.
 #[inline(always)]
@@ -184,11 +186,20 @@ impl Patches {
 
     /// Adds to each node of `out` the symmetric blocks of its copies: xx, yy, zz in one row, xy, xz, yz in the next.
     pub(crate) fn add_up_blocks<T: Scalar>(&self, executor: &Executor, rows: &[[T; 4]], out: &mut [Mat3<T>]) {
-        let add = |sum: &mut Mat3<T>, row: usize| {
-            let ([xx, yy, zz], [xy, xz, yz]) = (force(rows, 2 * row).to_array(), force(rows, 2 * row + 1).to_array());
-            *sum += Mat3::from(Sym3 { xx, yy, zz, xy, xz, yz });
-        };
-        self.copies.each(executor, out, &add);
+        executor.each(node_blocks(out.len()), NodeBlocks(out), &|block, NodeBlocks(out)| {
+            let mut blocks = [Sym3::diagonal(T::ZERO); NODE_BLOCK];
+            let blocks = &mut blocks[..out.len()];
+            self.write_up_blocks(block, rows, blocks);
+            out.iter_mut().zip(blocks).for_each(|(out, block)| *out += Mat3::from(*block));
+        });
+    }
+
+    /// Writes to each of a block of nodes the sum of the symmetric blocks of its copies.
+    pub(crate) fn write_up_blocks<T: Scalar>(&self, block: usize, rows: &[[T; 4]], out: &mut [Sym3<T>]) {
+        dispatch!(dispatch_level(), _simd => {
+            out.fill(Sym3::diagonal(T::ZERO));
+            self.copies.each_of_block(block, out, &|sum: &mut Sym3<T>, row| *sum = *sum + block_of(rows, row));
+        });
     }
 }
 
@@ -209,6 +220,13 @@ fn read_rows<T: Scalar>(nodes: &[u32], values: &[Vec3<T>], rows: &mut PatchRows<
 fn force<T: Scalar>(rows: &[[T; 4]], row: usize) -> Vec3<T> {
     let [x, y, z, _] = rows[row];
     Vec3::new(x, y, z)
+}
+
+/// The symmetric block of a copy.
+#[inline(always)]
+fn block_of<T: Scalar>(rows: &[[T; 4]], copy: usize) -> Sym3<T> {
+    let ([xx, yy, zz], [xy, xz, yz]) = (force(rows, 2 * copy).to_array(), force(rows, 2 * copy + 1).to_array());
+    Sym3 { xx, yy, zz, xy, xz, yz }
 }
 
 /// Values of the patches, patch after patch.

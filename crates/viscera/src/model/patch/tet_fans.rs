@@ -3,7 +3,7 @@ use super::deal::{deal, halves_share_no_node};
 use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record, Shared};
 use super::fan::{Fan, LONGEST, fans};
 use super::visitor::{BatchNodes, Keep, Largest, Scatter, ScatterAndMeasure, ScatterBlocks, Visitor, starts};
-use super::{PatchRows, Patches, PerPatch, clear, no_rows};
+use super::{PatchPairs, PatchRows, Patches, PerPatch, clear, no_rows};
 use crate::executor::Executor;
 use crate::math::{
     Lanes, MAX_LANES, Mat3, Part, Real, Scalar, Simd, Vec3, baseline, dispatch, dispatch_level, large_pages,
@@ -278,28 +278,28 @@ impl TetFans {
         self.walk(simd, patch, fields, &mut scatter);
     }
 
-    /// Adds to `out` the blocks on the diagonal that `element` makes of the edges of each tetrahedron at `x`.
-    pub(crate) fn add_diagonal<T: Scalar, E: Diagonal<T>>(
+    /// Sums the blocks on the diagonal that `element` makes of the edges of each tetrahedron at `x` on copies of the nodes.
+    pub(crate) fn sum_diagonal<T: Scalar, E: Diagonal<T>>(
         &self,
         x: &[Vec3<T>],
         element: &E,
-        sums: Sums<'_, T>,
-        out: &mut [Mat3<T>],
-    ) {
-        let Sums { executor, rows } = sums;
-        self.patches.each(executor, rows, 2, &|patch, rows| {
-            let (mut places, mut sums) = (no_rows(), no_rows());
-            self.patches.gather(patch, &[x], &mut places);
+        Sums { executor, rows }: Sums<'_, T>,
+    ) -> &Patches {
+        let data = self.patches.per_patch(&mut rows[..2 * self.patches.rows()], 2);
+        let work = |patch: usize, rows: PerPatch<'_, [T; 4]>, places: &mut [PatchRows<T>; 1]| {
+            let ([sums], _) = rows.values.as_chunks_mut() else { return };
+            clear(&mut sums[..2 * self.patches.nodes(patch).len()]);
+            if E::IS_OF_EDGES {
+                self.patches.gather(patch, &[x], places);
+            }
             if E::IS_WIDE {
-                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places[0], element, &mut sums));
+                dispatch!(dispatch_level(), simd => self.scatter_blocks(simd, patch, &places[0], element, sums));
             } else {
-                self.scatter_blocks(baseline(), patch, &places[0], element, &mut sums);
+                self.scatter_blocks(baseline(), patch, &places[0], element, sums);
             }
-            for (node, pair) in rows.chunks_exact_mut(2).enumerate().take(self.patches.nodes(patch).len()) {
-                (pair[0], pair[1]) = (sums[0][node], sums[1][node]);
-            }
-        });
-        self.patches.add_up_blocks(executor, rows, out);
+        };
+        executor.each_with(&no_rows, self.patches.count(), data, &work);
+        &self.patches
     }
 
     #[inline(always)]
@@ -309,7 +309,7 @@ impl TetFans {
         patch: usize,
         places: &PatchRows<T>,
         element: &impl Diagonal<T>,
-        sums: &mut [PatchRows<T>; 2],
+        sums: &mut PatchPairs<T>,
     ) {
         let mut scatter = ScatterBlocks { element, sums, blocks: [[nothing(); 8]; LONGEST] };
         self.walk(simd, patch, [places], &mut scatter);

@@ -2,7 +2,7 @@
 
 use super::element::{Deformed, Diagonal, Element, Measure, Measured, Record, Shared};
 use super::fan::LONGEST;
-use super::{PATCH_NODES, PatchRows};
+use super::{PATCH_NODES, PatchPairs, PatchRows};
 use crate::math::{Lanes, Mat3, Part, Real, Scalar, Simd, Sym3, Vec3, prefetch};
 use crate::model::lane_vector::{self, Kept, take_up};
 
@@ -256,7 +256,7 @@ impl<T: Scalar, S: Simd, R: Record<T>> Visitor<T, S, 1> for Keep<'_, T, S, R> {
 /// Adds up blocks as [`Scatter`] does forces, but that those of the origin do not follow from the others.
 pub(super) struct ScatterBlocks<'a, T: Scalar, E> {
     pub(super) element: &'a E,
-    pub(super) sums: &'a mut [PatchRows<T>; 2],
+    pub(super) sums: &'a mut PatchPairs<T>,
     /// The blocks of a batch, two vectors each.
     pub(super) blocks: KeptVectors<T, 8>,
 }
@@ -301,7 +301,7 @@ fn add_up_blocks<T: Scalar, S: Simd, R: Lanes<T, S>>(
     blocks: &KeptVectors<T, 8>,
     part: Part<S>,
     nodes: &BatchNodes<'_>,
-    sums: &mut [PatchRows<T>; 2],
+    sums: &mut PatchPairs<T>,
 ) {
     let [mut origin, mut end, kept, mut carried]: [LaneBlock<R>; 4] = LaneBlock::of_all(part, &blocks[0]);
     if !nodes.is_closed {
@@ -348,12 +348,24 @@ impl<R: Real> LaneBlock<R> {
     }
 
     #[inline(always)]
-    fn add<T: Scalar, S: Simd>(self, part: Part<S>, nodes: &[u32], sums: &mut [PatchRows<T>; 2])
+    fn add<T: Scalar, S: Simd>(self, part: Part<S>, nodes: &[u32], sums: &mut PatchPairs<T>)
     where
         R: Lanes<T, S>,
     {
-        add(part, self.0[0], nodes, &mut sums[0]);
-        add(part, self.0[1], nodes, &mut sums[1]);
+        let (starts, [first, second]) = (starts::<T, S, R>(part, nodes), self.0.map(Vec3::to_array));
+        let rows = sums.as_flattened_mut();
+        R::scatter_add_from(
+            first,
+            #[inline(always)]
+            |lane| 2 * starts(lane),
+            rows,
+        );
+        R::scatter_add_from(
+            second,
+            #[inline(always)]
+            |lane| 2 * starts(lane) + 4,
+            rows,
+        );
     }
 }
 

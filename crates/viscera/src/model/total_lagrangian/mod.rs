@@ -24,7 +24,7 @@ use super::{
 use crate::material::{
     LawFamily, LawKind, LawVisitor, StVenantKirchhoff, StableNeoHookean, Tissue, TransverseStVenantKirchhoff,
 };
-use crate::math::{Mat3, Scalar, Vec3};
+use crate::math::{Scalar, Vec3};
 use crate::mesh::{GaussRule, TetMesh, VolumeMesh};
 use crate::solver::Turn;
 
@@ -208,8 +208,8 @@ impl<T: Scalar, K: TetKernel> ForceModel<T> for TetModel<T, K> {
         self.tets.add_blocks(x, sink);
     }
 
-    fn add_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>, out: &mut [Mat3<T>]) {
-        self.tets.add_diagonal(x, scratch, out);
+    fn sum_diagonal(&self, x: &[Vec3<T>], scratch: &mut Scratch<T>) -> Option<&Patches> {
+        Some(self.tets.sum_diagonal(x, scratch))
     }
 
     fn mean_forces(&self) -> Option<&dyn MeanForces<T>> {
