@@ -1,5 +1,5 @@
 use super::vectors::{combine_into, dot_of};
-use super::{Filter, LinearOperator, Preconditioner, Size, Start, Stride};
+use super::{Filter, Filtered, LinearOperator, Preconditioner, Size, Start, Stride};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, ReadBlocks, node_blocks};
 use crate::math::{Mat3, Scalar, Sym3, Vec3, dispatch, dispatch_level};
 use crate::solver::BlockSink;
@@ -40,7 +40,7 @@ impl<T: Scalar> BlockJacobi<T> {
     /// stands in: a preconditioner has to be positive definite, whatever the matrix is.
     ///
     /// The `filters` go into the inverses, S P⁻¹ S, so that nothing across them counts.
-    pub fn invert(&mut self, masses: &[T], filters: &[Filter<T>], executor: &Executor) {
+    pub fn invert(&mut self, masses: &[T], filters: Filtered<'_, T>, executor: &Executor) {
         let blocks = std::mem::take(&mut self.blocks);
         let find = |block: usize, found: &mut [Sym3<T>]| {
             let added = &blocks[block * NODE_BLOCK..];
@@ -55,7 +55,7 @@ impl<T: Scalar> BlockJacobi<T> {
         &mut self,
         find: &(impl Fn(usize, &mut [Sym3<T>]) + Sync),
         masses: &[T],
-        filters: &[Filter<T>],
+        filters: Filtered<'_, T>,
         executor: &Executor,
     ) {
         let [xx, yy, zz, xy, xz, yz] = self.inverses.each_mut().map(|numbers| NodeBlocks(numbers.as_mut_slice()));
@@ -67,7 +67,8 @@ impl<T: Scalar> BlockJacobi<T> {
             find(number, blocks);
             let mut inverses = [xx.0, yy.0, zz.0, xy.0, xz.0, yz.0];
             dispatch!(dispatch_level(), _simd => invert_block(blocks, &masses[nodes.clone()], traces, &mut inverses));
-            for (node, filter) in filters[nodes].iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {
+            for node in filters.nodes(nodes.start, nodes.len()) {
+                let (filter, node) = (&filters.filters[node], node - nodes.start);
                 let [xx, yy, zz, xy, xz, yz] = inverses.each_ref().map(|numbers| numbers[node]);
                 let filtered = filtered(Sym3 { xx, yy, zz, xy, xz, yz }, filter);
                 put(filtered, node, &mut inverses);

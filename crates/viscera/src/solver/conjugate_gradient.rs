@@ -6,7 +6,7 @@
 //! Source: Baraff, Witkin (1998), section 5.2; with the start and the scale of Ascher, Boxerman, On the modified conjugate
 //! gradient method in cloth simulation (2003).
 
-use super::{Filter, Filtered, LinearOperator, Preconditioner, Size, Start, Stride, Turn};
+use super::{Filtered, LinearOperator, Preconditioner, Size, Start, Stride, Turn};
 use crate::executor::{Executor, NODE_BLOCK, NodeBlocks, node_blocks};
 use crate::math::{Scalar, Vec3};
 
@@ -76,10 +76,6 @@ pub struct ConjugateGradient<T> {
     residual: Vec<Vec3<T>>,
     direction: Vec<Vec3<T>>,
     product: Vec<Vec3<T>>,
-    /// Nodes of which nothing is free.
-    held: Vec<u32>,
-    /// Nodes that are free in a plane or along a line.
-    sliding: Vec<u32>,
     history: Vec<f64>,
 }
 
@@ -89,7 +85,7 @@ pub struct Problem<'a, T> {
     /// Right-hand side b.
     pub rhs: &'a [Vec3<T>],
     /// Filters S.
-    pub filters: &'a [Filter<T>],
+    pub filtered: Filtered<'a, T>,
     /// Prescribed values z.
     pub prescribed: &'a [Vec3<T>],
     /// A positive lower bound of the matrix, one number for each node: its part that comes from the masses.
@@ -103,8 +99,7 @@ impl<T: Scalar> ConjugateGradient<T> {
     pub fn new(nodes: usize, iterations: u32) -> Self {
         let zeros = || vec![Vec3::ZERO; nodes];
         let history = Vec::with_capacity(iterations as usize + 1);
-        let (held, sliding) = (Vec::with_capacity(nodes), Vec::with_capacity(nodes));
-        Self { residual: zeros(), direction: zeros(), product: zeros(), held, sliding, history }
+        Self { residual: zeros(), direction: zeros(), product: zeros(), history }
     }
 
     /// Residuals of the last solve over their scale: at the start and after each iteration.
@@ -128,7 +123,6 @@ impl<T: Scalar> ConjugateGradient<T> {
     ) -> SolveReport {
         let executor = problem.executor;
         self.history.clear();
-        self.list_filtered(problem.filters);
         let (mut size, scale) = self.start(matrix, preconditioner, problem, x);
         let goal = stop.relative() * scale;
         self.note(size.squared_norm, scale);
@@ -141,8 +135,7 @@ impl<T: Scalar> ConjugateGradient<T> {
                 ending = Ending::Converged;
                 break;
             }
-            let Self { residual, direction, product, held, sliding, .. } = &mut *self;
-            let filtered = Filtered { held, sliding, filters: problem.filters };
+            let (Self { residual, direction, product, .. }, filtered) = (&mut *self, problem.filtered);
             let curvature = matrix.apply_along(Turn { weight, direction, product, filtered }, executor);
             iterations += 1;
             if curvature.is_nan() || curvature <= 0.0 {
@@ -174,8 +167,7 @@ impl<T: Scalar> ConjugateGradient<T> {
         x: &mut [Vec3<T>],
     ) -> (Size, f64) {
         let executor = problem.executor;
-        let Self { residual, direction, product, held, sliding, .. } = self;
-        let filtered = Filtered { held, sliding, filters: problem.filters };
+        let (Self { residual, direction, product, .. }, filtered) = (self, problem.filtered);
         let data = (NodeBlocks(x), NodeBlocks(&mut *product));
         executor.each(node_blocks(data.0.0.len()), data, &|block, (NodeBlocks(x), NodeBlocks(product))| {
             filtered.merge(block * NODE_BLOCK, x, problem.prescribed);
@@ -202,14 +194,6 @@ impl<T: Scalar> ConjugateGradient<T> {
             for (x, &direction) in x.iter_mut().zip(&self.direction) {
                 *x = direction.mul_add(length, *x);
             }
-        }
-    }
-
-    fn list_filtered(&mut self, filters: &[Filter<T>]) {
-        self.held.clear();
-        self.sliding.clear();
-        for (node, filter) in filters.iter().enumerate().filter(|(_, filter)| **filter != Filter::Free) {
-            if *filter == Filter::Held { &mut self.held } else { &mut self.sliding }.push(node as u32);
         }
     }
 

@@ -1,6 +1,45 @@
 use super::Filter;
 use crate::math::{Scalar, Vec3};
 
+/// Which nodes are not free.
+#[derive(Clone, Debug, Default)]
+pub struct FilteredNodes {
+    held: Vec<u32>,
+    sliding: Vec<u32>,
+}
+
+impl FilteredNodes {
+    /// Those that these filters of all nodes leave less than free.
+    pub fn of<T: Scalar>(filters: &[Filter<T>]) -> Self {
+        let mut nodes = Self::default();
+        nodes.list(filters, 0..filters.len() as u32);
+        nodes
+    }
+
+    /// None, with room for so many.
+    pub(crate) fn with_room(nodes: usize) -> Self {
+        Self { held: Vec::with_capacity(nodes), sliding: Vec::with_capacity(nodes) }
+    }
+
+    /// Lists those among `nodes`, which ascend.
+    pub(crate) fn list<T: Scalar>(&mut self, filters: &[Filter<T>], nodes: impl Iterator<Item = u32>) {
+        self.held.clear();
+        self.sliding.clear();
+        for node in nodes {
+            match filters[node as usize] {
+                Filter::Free => {}
+                Filter::Held => self.held.push(node),
+                _ => self.sliding.push(node),
+            }
+        }
+    }
+
+    /// Together with the filters that they were listed by.
+    pub fn with<'a, T>(&'a self, filters: &'a [Filter<T>]) -> Filtered<'a, T> {
+        Filtered { held: &self.held, sliding: &self.sliding, filters }
+    }
+}
+
 /// The filters of all nodes, and which nodes are not free: most are, and need no look.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtered<'a, T> {
@@ -23,11 +62,15 @@ impl<T: Scalar> Filtered<'_, T> {
 
     /// S v + (I − S) prescribed, with the prescribed values of all nodes.
     pub(crate) fn merge(&self, first: usize, v: &mut [Vec3<T>], prescribed: &[Vec3<T>]) {
-        for nodes in [self.held, self.sliding] {
-            for node in among(nodes, first, v.len()).iter().map(|&node| node as usize) {
-                v[node - first] = self.filters[node].merge(v[node - first], prescribed[node]);
-            }
+        for node in self.nodes(first, v.len()) {
+            v[node - first] = self.filters[node].merge(v[node - first], prescribed[node]);
         }
+    }
+
+    /// Those of the `count` nodes from `first` on that are not free.
+    pub(crate) fn nodes(&self, first: usize, count: usize) -> impl Iterator<Item = usize> {
+        let lists = [self.held, self.sliding].map(|nodes| among(nodes, first, count));
+        lists.into_iter().flatten().map(|&node| node as usize)
     }
 
     /// [`Filtered::apply`] where held nodes have none. Once would leave the rounding of reactions, which are larger by far than what is

@@ -1,6 +1,6 @@
 use super::{
-    BlockJacobi, BlockMatrix, ConjugateGradient, Ending, LinearOperator, LinearSolver, PlacedTies, Problem,
-    SolverError, Stop, System, TieEquations,
+    BlockJacobi, BlockMatrix, ConjugateGradient, Ending, FilteredNodes, LinearOperator, LinearSolver, PlacedTies,
+    Problem, SolverError, Stop, System, TieEquations,
 };
 use crate::executor::Executor;
 use crate::math::Vec3;
@@ -58,7 +58,8 @@ impl LinearSolver for Iterative {
         for (node, block) in preconditioner.blocks_mut().iter_mut().enumerate() {
             *block = system.matrix.block(node, node);
         }
-        preconditioner.invert(&vec![0.0; system.nodes()], &system.filters, &Executor::serial());
+        let nodes = FilteredNodes::of(&system.filters);
+        preconditioner.invert(&vec![0.0; system.nodes()], nodes.with(&system.filters), &Executor::serial());
         if let Some((ties, by_mass)) = &mut self.ties {
             ties.update(by_mass, |node| preconditioner.inverse(node));
         }
@@ -72,9 +73,10 @@ impl LinearSolver for Iterative {
         let mut solution = zeros.clone();
         let mut matrix = Tied { matrix: system.matrix.clone(), ties: self.ties.as_ref().map(|(ties, _)| ties.clone()) };
         matrix.take_out(right);
+        let filtered_nodes = FilteredNodes::of(&system.filters);
         let problem = Problem {
             rhs: right,
-            filters: &system.filters,
+            filtered: filtered_nodes.with(&system.filters),
             prescribed: &zeros,
             masses: &vec![0.0; zeros.len()],
             executor: &Executor::serial(),

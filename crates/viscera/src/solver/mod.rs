@@ -26,8 +26,8 @@ pub use conjugate_gradient::{ConjugateGradient, Ending, Problem, SolveReport, St
 pub(crate) use dense_cholesky::DenseCholesky;
 pub use envelope::Envelope;
 pub use filter::Filter;
-pub use filtered::Filtered;
 pub(crate) use filtered::among;
+pub use filtered::{Filtered, FilteredNodes};
 pub use iterative::Iterative;
 pub use linear_solver::{LinearSolver, SolverError};
 pub use multigrid::{Cycle, Multigrid};

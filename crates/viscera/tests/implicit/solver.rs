@@ -5,7 +5,8 @@ use viscera::math::Mat3;
 use viscera::mesh::{TetMesh, VolumeMesh};
 use viscera::model::BlockSink;
 use viscera::solver::{
-    BlockJacobi, BlockMatrix, ConjugateGradient, Ending, Filter, LinearOperator, Problem, SolveReport, Stop,
+    BlockJacobi, BlockMatrix, ConjugateGradient, Ending, Filter, FilteredNodes, LinearOperator, Problem, SolveReport,
+    Stop,
 };
 
 use super::support::Vector;
@@ -54,10 +55,12 @@ fn solve(matrix: &mut BlockMatrix<f64>, case: &Case, stop: Stop) -> (Vec<Vector>
     for node in 0..nodes {
         preconditioner.add(node as u32, node as u32, matrix.block(node, node));
     }
-    preconditioner.invert(&vec![0.0; nodes], &case.filters, &Executor::serial());
+    let filtered_nodes = FilteredNodes::of(&case.filters);
+    let filtered = filtered_nodes.with(&case.filters);
+    preconditioner.invert(&vec![0.0; nodes], filtered, &Executor::serial());
     let masses = vec![1.0; nodes];
-    let Case { rhs, filters, prescribed } = case;
-    let problem = Problem { rhs, filters, prescribed, masses: &masses, executor: &Executor::serial() };
+    let Case { rhs, prescribed, .. } = case;
+    let problem = Problem { rhs, filtered, prescribed, masses: &masses, executor: &Executor::serial() };
     let mut solver = ConjugateGradient::new(nodes, stop.at_most());
     let mut x = vec![Vector::new(0.3, -0.2, 0.1); nodes];
     let report = solver.solve(matrix, &mut preconditioner, &problem, stop, &mut x);

@@ -34,7 +34,7 @@ impl<T: Scalar> Step<'_, T> {
         self.body.update_forces_and_linearize(self.stages);
         self.update_external_forces(self.from);
         self.memory.external.copy_from_slice(&self.body.external_forces);
-        self.memory.nodal.copy_from_slice(&self.body.state.velocities);
+        self.memory.nodal.copy_from_slice(&self.memory.velocities);
         self.find_damping();
         let (state, memory) = (&self.body.state, &mut *self.memory);
         for node in 0..memory.lack.len() {
@@ -74,7 +74,12 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
+    /// Weight alone stays as it is within a step.
     fn update_external_forces(&mut self, time: f64) {
+        let is_weight = self.body.followers.is_none() && !self.body.has_changing_forces();
+        if std::mem::replace(&mut self.memory.knows_external, true) && is_weight {
+            return;
+        }
         self.stages.run(Stage::Loads, || self.body.update_external_forces(time, self.drive.gravity));
     }
 

@@ -48,6 +48,7 @@ impl<T: Scalar> Step<'_, T> {
         });
         let contacts = &mut self.body.contacts;
         let touches = !contacts.is_empty();
+        let filtered = memory.filtered_nodes.with(&memory.filters);
         memory.rounding = self.stages.run(Stage::Preconditioner, || {
             let is_diagonal = matrix.assembled.is_none() && memory.multigrid.is_none();
             let alone = if let [model] = &state.models[..] { Some(model) } else { None };
@@ -57,7 +58,7 @@ impl<T: Scalar> Step<'_, T> {
                 let find = |block: usize, found: &mut [Sym3<T>]| {
                     self.body.scratch.write_blocks_of_block(patches, block, found)
                 };
-                memory.preconditioner.invert_found(&find, &matrix.masses, &memory.filters, &executor);
+                memory.preconditioner.invert_found(&find, &matrix.masses, filtered, &executor);
                 return rounding(memory.preconditioner.traces(), &state.positions, &executor);
             }
             memory.preconditioner.clear();
@@ -91,7 +92,7 @@ impl<T: Scalar> Step<'_, T> {
                 }
             }
             external.for_diagonal(&state.positions, |node, block| memory.preconditioner.add(node, node, block));
-            memory.preconditioner.invert(&matrix.masses, &memory.filters, &executor);
+            memory.preconditioner.invert(&matrix.masses, filtered, &executor);
             rounding(memory.preconditioner.traces(), &state.positions, &executor)
         });
         memory.least_rounding = memory.least_rounding.min(memory.rounding);
@@ -115,7 +116,7 @@ impl<T: Scalar> Step<'_, T> {
         let masses = tangent.masses;
         let problem = Problem {
             rhs: &memory.rhs,
-            filters: &memory.filters,
+            filtered: memory.filtered_nodes.with(&memory.filters),
             prescribed: &memory.prescribed,
             masses,
             executor: &executor,

@@ -2,7 +2,7 @@ use super::tangent::StepMatrix;
 use super::{Implicit, MatrixForm, Preconditioning};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::VolumeMesh;
-use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, Multigrid, Reach, among};
+use crate::solver::{BlockJacobi, BlockMatrix, ConjugateGradient, Filter, FilteredNodes, Multigrid, Reach, among};
 
 /// What an implicit step computes in; it means nothing between steps.
 #[derive(Clone, Debug)]
@@ -39,6 +39,8 @@ pub struct ImplicitMemory<T> {
     pub(super) filters: Vec<Filter<T>>,
     /// Nodes that were not free at the beginning of the step, in ascending order: the filters of all others are.
     pub(super) driven: Vec<u32>,
+    /// Those of them that still are not.
+    pub(super) filtered_nodes: FilteredNodes,
     pub(super) preconditioner: BlockJacobi<T>,
     pub(super) multigrid: Option<Multigrid<T>>,
     pub(super) conjugate_gradient: ConjugateGradient<T>,
@@ -46,6 +48,8 @@ pub struct ImplicitMemory<T> {
     pub(super) reactions: Vec<Vec3<T>>,
     /// Whether the step was solved by these equations.
     pub(super) is_linear: bool,
+    /// Whether the external forces were found in this step.
+    pub(super) knows_external: bool,
     /// Forces with which jaws drag nodes that slip through them [N].
     pub(super) dragged: Vec<(u32, Vec3<T>)>,
     /// Residuals of Newton's iterations over the forces that balance.
@@ -84,15 +88,22 @@ impl<T: Scalar> ImplicitMemory<T> {
             least_rounding: 0.0,
             filters: vec![Filter::Free; nodes],
             driven: Vec::with_capacity(nodes),
+            filtered_nodes: FilteredNodes::with_room(nodes),
             preconditioner: BlockJacobi::new(nodes),
             multigrid: (settings.preconditioner == Preconditioning::Multigrid).then(|| Multigrid::new(mesh, reach)),
             conjugate_gradient: ConjugateGradient::new(nodes, settings.stop(true).at_most()),
             reactions: zeros(),
             is_linear: false,
+            knows_external: false,
             dragged: Vec::with_capacity(nodes),
             history: Vec::with_capacity(settings.newton.at_most(true) as usize + 1),
             gain: (0.0, 0.0),
         }
+    }
+
+    /// Lists which of the driven nodes are not free.
+    pub(super) fn list_filtered(&mut self) {
+        self.filtered_nodes.list(&self.filters, self.driven.iter().copied());
     }
 
     /// The driven ones among the `count` nodes from `first` on.

@@ -43,11 +43,10 @@ const DECIDED: u32 = 20;
 const TRIALS: u32 = 10;
 
 impl<T: Scalar> Group<'_, T> {
-    /// One linear solve from where the body is; or what stands in for it where that says nothing.
+    /// One linear solve from the beginning, with coasting as its guess; or what stands in for it where that says nothing.
     pub(super) fn solve_linearised(&mut self) -> ImplicitReport {
         let before = self.evaluate();
         let arrived = self.go_on();
-        self.each(|step| step.memory.correction.copy_from_slice(&step.memory.coast));
         self.meet_tools(Guess::Coast);
         let mut solve = self.correct();
         for _ in 1..ROUNDS {
@@ -77,8 +76,8 @@ impl<T: Scalar> Group<'_, T> {
                     negative_curvature: false,
                 };
             }
-            self.each(|step| step.move_back());
         }
+        self.each(|step| step.move_back());
         let (relative, at_most) = INSTEAD;
         self.went_astray = true;
         let report = self.solve_in_full(relative, at_most);
@@ -110,13 +109,9 @@ impl<T: Scalar> Group<'_, T> {
                 return report;
             }
             let first = report.newton_iterations == 0;
-            self.each(|step| {
-                if first {
-                    step.memory.correction.copy_from_slice(&step.memory.coast);
-                } else {
-                    step.memory.correction.fill(Vec3::ZERO);
-                }
-            });
+            if !first {
+                self.each(|step| step.memory.correction.fill(Vec3::ZERO));
+            }
             let stalls = arrived && report.newton_iterations >= LOST && self.may_be_exact();
             let is_lost = arrived && (!self.may_climb || report.newton_iterations >= LOST);
             self.each(|step| step.memory.matrix.is_exact = stalls);

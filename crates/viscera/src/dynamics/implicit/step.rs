@@ -23,9 +23,12 @@ pub(super) struct Step<'a, T: Scalar> {
 }
 
 impl<T: Scalar> Step<'_, T> {
-    /// Forgets the step before, and finds the accelerations at the beginning where the scheme needs them.
+    /// Remembers the beginning, and finds the accelerations there where the scheme needs them.
     pub(super) fn begin(&mut self) {
+        self.memory.start.copy_from_slice(&self.body.state.positions);
+        self.memory.velocities.copy_from_slice(&self.body.state.velocities);
         self.memory.history.clear();
+        self.memory.knows_external = false;
         self.memory.least_rounding = f64::INFINITY;
         self.memory.matrix.is_exact = false;
         self.memory.dragged.clear();
@@ -36,10 +39,10 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// Remembers the beginning; where nodes would go without forces, and where driven ones have to go.
+    /// Where nodes would go without forces, which is the guess, and where driven ones have to go.
     pub(super) fn coast(&mut self) {
         let (body, drive, scheme, dt) = (&*self.body, self.drive, self.settings.scheme, T::from_f64(self.dt));
-        let ImplicitMemory { start, velocities, increment, coast, coast_velocities, filters, driven, lack, .. } =
+        let ImplicitMemory { increment, coast, coast_velocities, correction, filters, driven, lack, .. } =
             &mut *self.memory;
         let (state, lack, parts) = (&body.state, &lack[..], node_blocks(lack.len()));
         driven.drain(..).for_each(|node| filters[node as usize] = Filter::Free);
@@ -55,39 +58,37 @@ impl<T: Scalar> Step<'_, T> {
             scheme.coast(&Start { velocity: state.velocities[node], acceleration, past }, dt)
         };
         let goes_by_velocity = scheme.coasts_by_velocity(state.past.is_known);
-        let beginning = (NodeBlocks(start), NodeBlocks(velocities));
-        let ways = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(filters)));
-        let work =
-            |block: usize, ((start, own), ((increment, coast), (coast_velocities, filters))): Coasting<'_, T>| {
-                let nodes = block * NODE_BLOCK..block * NODE_BLOCK + coast.0.len();
+        let ways = ((NodeBlocks(increment), NodeBlocks(coast)), (NodeBlocks(coast_velocities), NodeBlocks(correction)));
+        let work = |block: usize, (((increment, coast), (coast_velocities, correction)), filters): Coasting<'_, T>| {
+            let nodes = block * NODE_BLOCK..block * NODE_BLOCK + coast.0.len();
+            if goes_by_velocity {
                 let velocities = &state.velocities[nodes.clone()];
-                start.0.copy_from_slice(&state.positions[nodes.clone()]);
-                own.0.copy_from_slice(velocities);
-                if goes_by_velocity {
-                    dispatch!(dispatch_level(), _simd => coast.0.iter_mut().zip(velocities).for_each(|(coast, &v)| *coast = v * dt));
-                    coast_velocities.0.copy_from_slice(velocities);
-                } else {
-                    let ends = coast.0.iter_mut().zip(coast_velocities.0.iter_mut());
-                    ends.zip(nodes.clone()).for_each(|((coast, end), node)| {
-                        Coast { increment: *coast, velocity: *end } = free(node);
-                    });
-                }
-                increment.0.fill(Vec3::ZERO);
-                for &node in among(driven, nodes.start, nodes.len()) {
-                    let (node, i) = (node as usize, node as usize - nodes.start);
-                    let position = state.positions[node];
-                    let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
-                    filters.0[i] = filter;
-                    match target {
-                        Some(target) if filter == Filter::Held => {
-                            (coast.0[i], coast_velocities.0[i]) = (target - position, Vec3::ZERO);
-                        }
-                        Some(target) => coast.0[i] = filter.merge(coast.0[i], target - position),
-                        None => {}
+                dispatch!(dispatch_level(), _simd => coast.0.iter_mut().zip(velocities).for_each(|(coast, &v)| *coast = v * dt));
+                coast_velocities.0.copy_from_slice(velocities);
+            } else {
+                let ends = coast.0.iter_mut().zip(coast_velocities.0.iter_mut());
+                ends.zip(nodes.clone()).for_each(|((coast, end), node)| {
+                    Coast { increment: *coast, velocity: *end } = free(node);
+                });
+            }
+            increment.0.fill(Vec3::ZERO);
+            for &node in among(driven, nodes.start, nodes.len()) {
+                let (node, i) = (node as usize, node as usize - nodes.start);
+                let position = state.positions[node];
+                let (target, filter) = (drive.target(body, node, position), body.free_directions(node));
+                filters.0[i] = filter;
+                match target {
+                    Some(target) if filter == Filter::Held => {
+                        (coast.0[i], coast_velocities.0[i]) = (target - position, Vec3::ZERO);
                     }
+                    Some(target) => coast.0[i] = filter.merge(coast.0[i], target - position),
+                    None => {}
                 }
-            };
-        body.scratch.executor.each(parts, (beginning, ways), &work);
+            }
+            correction.0.copy_from_slice(coast.0);
+        };
+        body.scratch.executor.each(parts, (ways, NodeBlocks(filters)), &work);
+        self.memory.list_filtered();
     }
 
     /// v⁺ for the δ that is known.
@@ -121,12 +122,15 @@ impl<T: Scalar> Step<'_, T> {
         }
     }
 
-    /// δ is zero again, and the body where it began.
+    /// δ is zero again, the body where it began, and coasting the guess.
     pub(super) fn move_back(&mut self) {
         self.memory.increment.fill(Vec3::ZERO);
-        self.body.state.positions.copy_from_slice(&self.memory.start);
-        self.body.state.positions_changed();
-        self.body.is_linearized = false;
+        self.memory.correction.copy_from_slice(&self.memory.coast);
+        if self.body.state.positions != self.memory.start {
+            self.body.state.positions.copy_from_slice(&self.memory.start);
+            self.body.state.positions_changed();
+            self.body.is_linearized = false;
+        }
     }
 
     /// The state at the end of the step.
@@ -159,10 +163,10 @@ impl<T: Scalar> Step<'_, T> {
     }
 }
 
-/// x and v at the beginning, δ and δ̂, v̂ and filters.
+/// δ and δ̂, v̂ and the guess, and filters.
 type Coasting<'a, T> = (
-    (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>),
-    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Filter<T>>)),
+    ((NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>), (NodeBlocks<'a, Vec3<T>>, NodeBlocks<'a, Vec3<T>>)),
+    NodeBlocks<'a, Filter<T>>,
 );
 
 /// Places, δ and its correction.

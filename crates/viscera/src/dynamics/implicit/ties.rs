@@ -16,7 +16,9 @@ use crate::body::{NodeMotion, SimulatedBody};
 use crate::dynamics::tied::{TiedBodies, TiedNode, mobility_of_mass};
 use crate::math::{Scalar, Vec3};
 use crate::mesh::Point;
-use crate::solver::{BlockJacobi, ConjugateGradient, Ending, Filter, LinearOperator, PlacedTies, Problem};
+use crate::solver::{
+    BlockJacobi, ConjugateGradient, Ending, Filter, FilteredNodes, LinearOperator, PlacedTies, Problem,
+};
 use crate::stage::{Stage, Stages};
 
 /// Memory for bodies that ties hold together, one after the other.
@@ -34,6 +36,7 @@ pub(crate) struct ImplicitTies<T> {
     product: Vec<Vec3<T>>,
     masses: Vec<T>,
     filters: Vec<Filter<T>>,
+    filtered_nodes: FilteredNodes,
     /// −λ of each tie at the beginning of the step, in the forces that were evaluated last, and in the linear system that was solved last [N].
     forces: [Vec<Point>; 3],
     /// Impulse on the node of each tie in the step [N s].
@@ -64,6 +67,7 @@ impl<T: Scalar> ImplicitTies<T> {
             product: zeros(),
             masses: vec![T::ZERO; nodes],
             filters: vec![Filter::Free; nodes],
+            filtered_nodes: FilteredNodes::with_room(nodes),
             forces: [none(), none(), none()],
             impulses: none(),
         }
@@ -82,6 +86,7 @@ impl<T: Scalar> ImplicitTies<T> {
             }
             self.preconditioner.take(span.start, &memory.preconditioner, T::ONE / memory.matrix.stiffness);
         }
+        self.filtered_nodes.list(&self.filters, 0..self.filters.len() as u32);
         let known = self.filters.iter().zip(&self.prescribed);
         self.correction.iter_mut().zip(known).for_each(|(x, (filter, &z))| *x = filter.merge(*x, z));
     }
@@ -199,11 +204,13 @@ impl<T: Scalar> Group<'_, T> {
             prescribed,
             masses,
             filters,
+            filtered_nodes,
             ..
         } = &mut *ties;
         let mut matrix = SideBySide { bodies, memories, numbers, starts, by_matrix, stages };
         matrix.take_out(rhs);
-        let problem = Problem { rhs, filters, prescribed, masses, executor: &executor };
+        let filtered = filtered_nodes.with(filters);
+        let problem = Problem { rhs, filtered, prescribed, masses, executor: &executor };
         let report = stages.run(Stage::LinearSolve, || {
             conjugate_gradient.solve(&mut matrix, preconditioner, &problem, stop, correction)
         });

@@ -87,7 +87,11 @@ impl<T: Scalar> Step<'_, T> {
                 memory.coast_velocities[node] = coast.velocity;
             }
         }
-        self.memory.dragged.len() > known
+        let slips = self.memory.dragged.len() > known;
+        if slips {
+            self.memory.list_filtered();
+        }
+        slips
     }
 
     /// Forgets what was found, for the step to be solved again.
